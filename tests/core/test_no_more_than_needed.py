@@ -17,7 +17,7 @@ import pytest
 from mdr_core import equivalent_1d, history, normal, tangential
 from mdr_core.fields import normal as normal_fields
 from mdr_core.fields import tangential as tangential_fields
-from mdr_core.history import contact_state, slip_memory, step_results
+from mdr_core.history import slip_memory, step_results
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.profiles import KINDS, Paraboloid, Profile, Sphere, SphericalTipCone
 from mdr_core.profiles import base as profiles
@@ -196,7 +196,6 @@ def test_a_step_computes_only_what_is_requested() -> None:
         with (
             patch.object(step_results, "_work", never),
             patch.object(step_results, "variance_growth", never),
-            patch.object(contact_state, "variance_growth", never),
             patch.object(Sphere, "reduced_energy", never),
         ):
             with patch.object(equivalent_1d, "invert", never):

@@ -12,7 +12,7 @@ from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.history import slip_memory
 from mdr_core.history.slip_layout import NORMAL, STEP
 from mdr_core.history.slip_memory import Polyline, VertexTree, read_only
-from mdr_core.history.step_results import SHORT, TractionVertices, variance_growth
+from mdr_core.history.step_results import SHORT, TractionVertices
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.materials import Material, normal_modulus, shear_modulus
 from mdr_core.profiles import Profile
@@ -138,15 +138,6 @@ class ContactState(Results):
         return Edge(coordinate, force, below.shear + slope * grown)
 
     @property
-    def _variance(self) -> float:
-        """Variance of the anchors, int (anchor - mean)^2 dx over 0 < x < a [length^3]."""
-        coordinate, _, shear = np.array(self._edges).T
-        tree, ends = self._tree, np.array([coordinate[:-1], coordinate[1:]])
-        span, growth = tree.span[1:], (tree.slope * tree.span)[1:]
-        grown = variance_growth(self._moments, tree.normal[:-1], span, growth, ends, shear[:-1])
-        return float(grown.sum())
-
-    @property
     def depth(self) -> Array:
         """Depths w of the vertices, from 0 to d [length]; empty in separation."""
         return self._tree.normal.copy()
@@ -196,9 +187,8 @@ class ContactState(Results):
         """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length]."""
         if not self.in_contact:
             return 0.0
-        edge = self._edges[-1]
-        radius = self.profile.contact_radius(edge.coordinate)
-        return float(self.energy_unit * (edge.shear * edge.shear / (4 * radius) + self._variance))
+        vertices = TractionVertices(self._moments, self._tree)
+        return float(self.energy_unit * vertices.square[-1])
 
     @cached_property
     def dissipation(self) -> float:
