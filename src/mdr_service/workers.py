@@ -66,7 +66,6 @@ class WorkerPool:
         self._supervised = False
         # Set once every process has started, or one has failed to.
         self._settled = Event()
-        self._self_test: Callable[[], object] = int
 
     @asynccontextmanager
     async def started(self, self_test: Callable[[], object]) -> AsyncIterator[None]:
@@ -74,14 +73,13 @@ class WorkerPool:
 
         A process first runs `self_test`, a function of a module, and is not used if that fails.
         """
-        self._self_test = self_test
         observability.QUEUE.set_function(lambda: len(self._waiting))
         observability.PROCESSES.set_function(lambda: sum(each.usable for each in self._processes))
         async with create_task_group() as tasks:
             self._supervised = True
             try:
                 for _ in range(self._settings.compute_processes):
-                    tasks.start_soon(self._keep_process)
+                    tasks.start_soon(self._keep_process, self_test)
                 with move_on_after(_START_SECONDS):
                     await self._settled.wait()
                 yield
@@ -89,22 +87,22 @@ class WorkerPool:
                 self._supervised = False
                 tasks.cancel_scope.cancel()
 
-    async def _keep_process(self) -> None:
+    async def _keep_process(self, self_test: Callable[[], object]) -> None:
         """Start one process after the other."""
         while True:
             try:
-                await self._lend_process()
+                await self._lend_process(self_test)
             except Exception:
                 _logger.exception("compute process failed")
                 self._settled.set()
                 await sleep(_PAUSE)
 
-    async def _lend_process(self) -> None:
+    async def _lend_process(self, self_test: Callable[[], object]) -> None:
         """Start a process, lend it to computations, and count its end, whatever the reason."""
         process = await ComputeProcess.start()
         ended = create_task(process.wait())
         try:
-            _raised(await process.call(_START_SECONDS, self._self_test))
+            _raised(await process.call(_START_SECONDS, self_test))
             process.end = "lost"
             self._processes.add(process)
             self._offer(process)
@@ -160,10 +158,6 @@ class WorkerPool:
             if process.usable:
                 self._offer(process)
         return cast("_Result", _raised(outcome))
-
-    async def check(self) -> None:
-        """Run the self-test in a process; raise ServiceError if it fails or does not run soon."""
-        await self.run_in_process(self._self_test)
 
     async def _take_process(self, job: _Job) -> ComputeProcess:
         if not self._supervised:

@@ -295,8 +295,8 @@ def test_pool_without_supervision_is_not_ready() -> None:
     async def main() -> ServiceError:
         pool = WorkerPool(ONE)
         async with pool.started(own_process):
-            await pool.check()
-        return await error_of(pool.check())
+            await pool.run_in_process(own_process)
+        return await error_of(pool.run_in_process(own_process))
 
     assert anyio.run(main).type == problems.LOST
 

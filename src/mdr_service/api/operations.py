@@ -8,7 +8,7 @@ from prometheus_client import generate_latest
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from mdr_core import __version__, profiles
-from mdr_service import observability, problems
+from mdr_service import health, observability, problems
 from mdr_service.api.documentation import PAGE_HEADERS, failures
 from mdr_service.schemas.answers import Catalogue, Health, ProfileField, ProfileKind
 from mdr_service.schemas.profiles import MODELS
@@ -73,7 +73,7 @@ async def ready(request: Request) -> Health:
 
     An instance that is busy is not ready for the moment.
     """
-    await request.app.state.workers.check()
+    await request.app.state.workers.run_in_process(health.self_test)
     return _OK
 
 
