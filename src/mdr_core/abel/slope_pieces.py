@@ -34,8 +34,6 @@ _BLOCK: Final = 16
 _MANY: Final = 16_384
 # Distance from the axis, over the first piece, within which a smooth stress is constant.
 _AXIS: Final = 1e-8
-# Least denominator.
-_LEAST: Final = float(np.finfo(float).tiny)
 
 
 def integrals(
@@ -156,16 +154,6 @@ class SlopePieces:
             product[power : power + len(half_force)] += 2 * row * half_force
         return PPoly(product[::-1], self.edges).antiderivative()
 
-    @cached_property
-    def _over_axis(self) -> Array:
-        """Stress at the axis up to each edge, shape (k + 1,)."""
-        return np.append(0.0, np.cumsum(self._over_axis_in(self.edges[:-1], self.edges[1:])))
-
-    def _over_axis_in(self, low: Array, high: Array) -> Array:
-        """int g'/x dx over parts of a piece of a smooth tip."""
-        x = np.maximum(low + (high - low) * _NEAR_NODES[:, None], _LEAST)
-        return np.asarray((high - low) * (_NEAR_WEIGHTS @ (self._slope(x) / x)))
-
     def slope(self, x: Array) -> Array:
         """g'(x) [1]."""
         return self._slope(x)[()]
@@ -181,13 +169,6 @@ class SlopePieces:
     def energy(self, x: Array) -> Array:
         """int_0^x (g(x) - g)^2 dt = 2 int (half force) g' dt [length^3]."""
         return self._energy(x)[()]
-
-    def over_axis(self, x: Array) -> Array:
-        """int_0^x g'(t)/t dt of a smooth tip [1]."""
-        at = np.ravel(x)
-        piece = self.edges[1:-1].searchsorted(at, side="right")
-        total = self._over_axis[piece] + self._over_axis_in(self.edges[piece], at)
-        return total.reshape(np.shape(x))[()]
 
     def stress(self, low: float, high: float, width: float, r: Array) -> Array:
         """Return int_max(r,low)^high g'(x)/sqrt(x^2 - r^2) dx at radii r < high.

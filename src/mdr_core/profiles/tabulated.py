@@ -18,7 +18,7 @@ from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.table_fit import fit_table
 from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
-from mdr_core.quadrature import composite_rule, gauss_legendre
+from mdr_core.quadrature import composite_rule, in_order
 from mdr_core.typing import Array, Flags, Indices, Parameter
 
 # Bound on the error of the sums over the pieces: several times the largest in the tests.
@@ -27,8 +27,11 @@ _ROUNDING: Final = 2e-13
 _SAMPLES, _MARGIN = 8, 1.5
 # Deviation that is within a standard uncertainty.
 _MET: Final = 1.1
-# Gauss-Legendre nodes of a piece, for its energy: exact for the product of its polynomials.
+# Gauss-Legendre nodes of a piece: exact for the product of its polynomials.
 _NODES: Final = 16
+# Number of times that the last radius is halved towards the axis, so that 1/x is smooth on a piece.
+_HALVES: Final = 40
+_LEAST: Final = float(np.finfo(float).tiny)
 # Nodes and weights of a mean over the angles, in which g(r sin t) is smooth.
 _ANGLES, _SHARES = composite_rule(16, 8)
 # Points of a tip from the coefficients of its area function.
@@ -191,6 +194,11 @@ class Tabulated(Profile):
         """Knots and breaks, at which a derivative of g' jumps."""
         return np.union1d(self.fit.edges[1:-1], self._breaks)
 
+    @property
+    def _edges(self) -> Array:
+        """Axis, knots, breaks and the end."""
+        return np.concatenate([[0.0], self.coordinate_breaks, [self._end]])
+
     @cached_property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         tip = () if self._spline.smooth_tip else (0.0,)
@@ -270,29 +278,33 @@ class Tabulated(Profile):
         return self._with_flanks(spline, coordinate, lambda shape, s: shape.reduced_force(s))
 
     def reduced_energy(self, coordinate: Array) -> Array:
-        """Closed for a spline; with flanks int_0^a F_N(x)/E* g'(x) dx, piece by piece."""
+        """Closed for a spline; with flanks int_0^a F_N(x)/E* g'(x) dx."""
         if not self._flanks:
             return self._spline.energy(coordinate)
-        a, total = np.ravel(coordinate), np.zeros(np.size(coordinate))
-        nodes, weights = gauss_legendre(_NODES)
-        for branch in self.branches:
-            # s = sqrt(x^2 - b^2) removes the root of g' at the break below.
-            low, high = (
-                inverse_hypot(np.clip(x, branch.start, branch.stop), branch.base)
-                for x in (branch.start, a)
-            )
-            s = low + (high - low) * (1 - nodes[:, None]) / 2
-            x = np.minimum(np.hypot(branch.base, s), self._end)
-            density = self.reduced_force(x) * branch.weight(x, s)
-            total += (high - low) / 2 * (weights @ density)
-        return total.reshape(np.shape(coordinate))[()]
+        return self._integral(self.reduced_force, coordinate)
+
+    def _integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
+        """int_0^a density(x) g'(x) dx, by Gauss's rule on each piece."""
+        a, halves = np.ravel(coordinate), self._end / 2.0 ** np.arange(1, _HALVES)
+        edges = np.union1d(self._edges, halves)
+        piece = edges[1:-1].searchsorted(a, side="right")
+        low, high = np.append(edges[:-1], edges[piece]), np.append(edges[1:], a)
+        base = np.append(0.0, self._breaks)[np.searchsorted(self._breaks, low, side="right")]
+        # s = sqrt(x^2 - b^2) removes the root of g' at the break below.
+        first, last = inverse_hypot(low, base), inverse_hypot(high, base)
+        nodes, weights = (part[:, None] for part in composite_rule(_NODES))
+        s = first + (last - first) * nodes
+        x = np.maximum(np.hypot(base, s), _LEAST)
+        slope = self.depth_slope_beyond(x, base, s * s / (x + base)) * s / x
+        values = (last - first) * in_order(weights, density(x) * slope)
+        total = np.append(0.0, np.cumsum(values[: edges.size - 1]))[piece]
+        return np.asarray(total + values[edges.size - 1 :]).reshape(np.shape(coordinate))[()]
 
     # Fields.
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
-        edges = np.concatenate([[0.0], self.coordinate_breaks, [self._end]])
-        return tuple(map(self._branch, edges[:-1], edges[1:]))
+        return tuple(map(self._branch, self._edges[:-1], self._edges[1:]))
 
     def _branch(self, start: float, stop: float) -> Branch:
         base = max((b for b in self._breaks if b <= start), default=0.0)
@@ -375,10 +387,8 @@ class Tabulated(Profile):
         return max(float(steps[0].max()), 0.0), np.maximum.accumulate(beyond)
 
     def axis_stress(self, coordinate: Array) -> Array:
-        """Stress integral at the axis, in closed form."""
-        if self._flanks:
-            return super().axis_stress(coordinate)
-        return self._spline.over_axis(coordinate) / np.pi
+        stress = self._integral(np.reciprocal, coordinate) / np.pi
+        return stress if self._spline.smooth_tip else stress + np.inf
 
     def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
         """Source: notes, §5. Parameters: see `Profile`."""
