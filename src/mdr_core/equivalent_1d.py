@@ -40,7 +40,12 @@ def load_and_slope(profile: Profile, *, of_force: bool) -> Sloped:
 
     The load is F_N/E* [length^2], or the depth [length]. Source: notes, §1.
     """
-    return profile.force_and_slope if of_force else profile.depth_and_slope
+    load, slope = (
+        (profile.reduced_force, profile.force_slope)
+        if of_force
+        else (profile.depth, profile.depth_slope)
+    )
+    return lambda coordinate: (load(coordinate), slope(coordinate))
 
 
 def coordinate_from_load(profile: Profile, load: Array, *, of_force: bool) -> Array:

@@ -282,14 +282,6 @@ class Profile(ABC):
         """Derivative of F_N/E* with respect to the contact coordinate s, 2 a d'(s)."""
         return 2 * self.contact_radius(coordinate) * self.depth_slope(coordinate)
 
-    def depth_and_slope(self, coordinate: Array) -> tuple[Array, Array]:
-        """`depth` and `depth_slope`, which share parts of their formulas."""
-        return self.depth(coordinate), self.depth_slope(coordinate)
-
-    def force_and_slope(self, coordinate: Array) -> tuple[Array, Array]:
-        """`reduced_force` and `force_slope`, which share parts of their formulas."""
-        return self.reduced_force(coordinate), self.force_slope(coordinate)
-
     def reduced_energy(self, coordinate: Array) -> Array:
         """Elastic energy over E*, int_0^a (d - g)^2 dx = int_0^d F_N/E* dd [length^3]."""
         depth = self.depth(coordinate)

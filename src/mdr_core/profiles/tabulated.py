@@ -1,8 +1,8 @@
 """Profile through, or near, the points of a table."""
 
 from collections.abc import Callable, Sequence
-from functools import cached_property
-from typing import Any, ClassVar, Final, Self
+from functools import cached_property, partial
+from typing import ClassVar, Final, Self
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
@@ -161,10 +161,6 @@ class Tabulated(Profile):
         breaks = f", breaks={list(self._breaks)}" if self._breaks else ""
         return f"Tabulated({self.r.size} points up to radius {self._end:.6g}{breaks})"
 
-    def __getstate__(self) -> dict[str, Any]:
-        """Everything but the functions of the branches, so that a fitted table can be sent."""
-        return {name: value for name, value in vars(self).items() if name != "branches"}
-
     @property
     def normal_method(self) -> str:
         return "piecewise_moments"
@@ -304,15 +300,12 @@ class Tabulated(Profile):
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
-        return tuple(map(self._branch, self._edges[:-1], self._edges[1:]))
-
-    def _branch(self, start: float, stop: float) -> Branch:
-        base = max((b for b in self._breaks if b <= start), default=0.0)
-
-        def weight(x: Array, s: Array) -> Array:
-            return self._weight(base, x, s)
-
-        return Branch(float(base), weight, float(stop), float(start))
+        starts, stops = self._edges[:-1].tolist(), self._edges[1:].tolist()
+        bases = [max((b for b in self._breaks if b <= start), default=0.0) for start in starts]
+        return tuple(
+            Branch(base, partial(self._weight, base), stop, start)
+            for base, start, stop in zip(bases, starts, stops, strict=True)
+        )
 
     def branch_weights(self, x: Array, s: Array, owner: Indices) -> Array:
         """g'(x) s/x at places (n, m) of the branches `owner` (m,)."""
