@@ -13,7 +13,6 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.breaks import break_below, has_many_breaks
 from mdr_core.elementwise import every, full, is_number, number, some, where
 from mdr_core.inversion import Function, Sloped, invert
 from mdr_core.profiles import Profile
@@ -249,3 +248,23 @@ def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Arra
         total = total + outer / 2 * in_order(weights, values)
     # At the tip the slope may be infinite.
     return where(width > 0, total, 0.0)
+
+
+def break_below(profile: Profile, high: Array) -> tuple[Array, Array]:
+    """Return the nearest break below each coordinate and the one before it; zero for none."""
+    breaks = profile.coordinate_breaks
+    if has_many_breaks(profile):
+        padded = np.concatenate([[0.0, 0.0], breaks])
+        index = np.maximum(np.searchsorted(padded, high, side="left") - 1, 1)
+        return padded[index], padded[index - 1]
+    nothing = full(0.0, high)
+    if not breaks.size:
+        return nothing, nothing
+    # Every case of a sweep has its own break.
+    own = breaks if profile.swept else breaks[0]
+    return where(high > own, own, 0.0), nothing
+
+
+def has_many_breaks(profile: Profile) -> bool:
+    """True for tables of several intervals, whose parameters are never arrays."""
+    return profile.coordinate_breaks.size > 1 and not profile.swept

@@ -17,9 +17,14 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from mdr_core.breaks import break_below, has_many_breaks
 from mdr_core.elementwise import every, some, where
-from mdr_core.equivalent_1d import coordinate_from_load, depth_step, force_step
+from mdr_core.equivalent_1d import (
+    break_below,
+    coordinate_from_load,
+    depth_step,
+    force_step,
+    has_many_breaks,
+)
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import cumulative_rule, in_order

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.breaks import has_many_breaks
+from mdr_core.equivalent_1d import has_many_breaks
 from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import TractionSegments
 from mdr_core.history.load_path import SampledPath

@@ -94,8 +94,6 @@ class Series(Profile):
 
     @cached_property
     def domain(self) -> float:
-        if self._positive:
-            return inf
         # f' and g', times the radius.
         slope_f = log_terms(self._powers, lambda n: n)
         slope_g = log_terms(self._powers, lambda n: n * float(kappa(n)))
@@ -125,13 +123,9 @@ class Series(Profile):
 
     def _total(self, parts: Iterable[Array], factor: Array | float = 1.0) -> Array:
         """Sum of the terms of a positive total, times a factor; infinity where they overflow."""
-        total: Any
-        if self._positive:
-            total = sum(parts) * factor
-            return total
         # Terms of both signs may overflow.
         with np.errstate(all="ignore"):
-            total = sum(parts) * factor
+            total: Any = sum(parts) * factor
         return where(np.isnan(total), inf, total)
 
     @property
