@@ -3,7 +3,7 @@
 from collections.abc import Generator, Iterable
 from concurrent.futures import CancelledError
 from importlib import import_module
-from typing import Any, Final
+from typing import Final
 
 import pyarrow as pa
 
@@ -23,6 +23,8 @@ _SETTINGS: Final = {
     "distributed.nanny.pre-spawn-environ": _ENVIRONMENT,
     # An interrupt by the terminal is left to the client, which closes its workers.
     "distributed.worker.preload": ["import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"],
+    # A chunk of many columns is sent once: it is no reason for a warning.
+    "distributed.admin.large-graph-warning-threshold": "1 GB",
 }
 
 
@@ -35,9 +37,10 @@ def in_workers(
     are lost, and solves their chunks again.
     """
     distributed = import_module("distributed")
-    where = {"address": address} if address else _on_this_machine(processes)
+    import_module("dask").config.set(_SETTINGS)
+    local = {"n_workers": processes, "threads_per_worker": 1, "dashboard_address": None}
     try:
-        with distributed.Client(**where) as client:
+        with distributed.Client(**({"address": address} if address else local)) as client:
             limit = _AHEAD * max(sum(client.nthreads().values()), 1)
             solved = distributed.as_completed(with_results=True)
             for index, batch in chunks:
@@ -52,7 +55,8 @@ def in_workers(
     except ImportError as error:
         raise SweepError(f"a worker lacks a package: {error}") from None
     except (OSError, CancelledError) as error:
-        raise SweepError(f"the Dask scheduler does not respond: {error}") from None
+        place = address or "of this machine"
+        raise SweepError(f"the Dask scheduler {place} does not respond: {error}") from None
 
 
 def solve(spec: Spec, expected: dict[str, str], index: int, batch: bytes) -> Chunk:
@@ -69,9 +73,3 @@ def _to_bytes(batch: pa.RecordBatch) -> bytes:
     with pa.ipc.new_stream(sink, batch.schema) as writer:
         writer.write_batch(batch)
     return bytes(sink.getvalue())
-
-
-def _on_this_machine(processes: int) -> dict[str, Any]:
-    """Return the arguments of a client that starts worker processes."""
-    import_module("dask").config.set(_SETTINGS)
-    return {"n_workers": processes, "threads_per_worker": 1, "dashboard_address": None}
