@@ -5,7 +5,7 @@ Every function returns an array of shape (loads, radii), or (radii,) if the load
 
 from collections.abc import Callable
 from math import inf, prod
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,9 +29,6 @@ Contact = NormalContact | TangentialContact
 """A contact, whose tangential load does not change the fields of the normal one."""
 # Values of a field under the load of this index, at some radii.
 Field = Callable[[int, Array], Array]
-
-# Radii evaluated at once, which bounds the memory.
-_BLOCK: Final = 131_072
 
 
 def pressure(contact: Contact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
@@ -170,12 +167,7 @@ def fill(shape: tuple[int, ...], field: Field, radius: ArrayLike) -> Array:
     Raises InputError if there is no radius, or one that is negative or not finite.
     """
     r = checked_radii(radius)
-    out = np.empty((prod(shape), r.size))
-    for start in range(0, r.size, _BLOCK):
-        part = slice(start, start + _BLOCK)
-        for load, row in enumerate(out):
-            row[part] = field(load, r[part])
-    return out.reshape(shape + r.shape)
+    return np.array([field(load, r) for load in range(prod(shape))]).reshape(shape + r.shape)
 
 
 def stress(profile: Profile, annulus: Annulus, a: float, r: Array, rtol: float) -> Array:
