@@ -7,7 +7,7 @@ gamma(x) = g(x) - (d - D), and wears by dh/dN = kappa p sigma. D is the displace
 divided by mu E*/G*. In full slip c = 0, and sigma is D - d larger. Source: notes, §11.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final, Self
 
@@ -40,7 +40,7 @@ class AnnulusState:
     tilt_terms: Array
     """Where the stick zone grows, the tilt C(r) = -(2/pi) int arccos(c/r) dw_c of the surface
     outside as a Chebyshev series in 1/r, from a_0 to the largest contact radius; else empty."""
-    trail: Array | None = None
+    trail: Array = field(default_factory=lambda: np.empty((2, 0)))
     """Radii c that a growing stick zone has passed, and the wear w_c that the springs keep there;
     the last of them is the stick edge. Shape (2, k)."""
 
@@ -60,7 +60,7 @@ class AnnulusState:
     @property
     def passed(self) -> tuple[Array, Array]:
         """Middle radii of the intervals of the trail, and the steps of w_c over them."""
-        radius, worn = np.empty((2, 0)) if self.trail is None else self.trail
+        radius, worn = self.trail
         return (radius[1:] + radius[:-1]) / 2, np.diff(worn)
 
     @property

@@ -164,10 +164,9 @@ def _worn_depth(state: AnnulusState, radius: Array) -> Array:
     worn = state.initial.maps.at(state.worn, np.minimum((s / state.end) ** 2, 1.0))
     result[inside] = (state.end if full_slip else s) * worn
     at, step = state.passed
-    if step.any():
-        within = radius < a
-        root = inverse_hypot(radius[within][:, None], at)
-        result[within] += 2 / np.pi * (np.arctan2(root, at) @ step)
+    within = radius < a
+    root = inverse_hypot(radius[within][:, None], at)
+    result[within] += 2 / np.pi * (np.arctan2(root, at) @ step)
     # Below rounding at the edges, and between nodes that are too few, the polynomials may be < 0.
     return np.maximum(result, 0.0)
 
@@ -206,9 +205,7 @@ def _stick_pressure(state: AnnulusState, radius: Array) -> Array:
         maps.steps @ state.gamma
     )
     total += float(maps.at_stick @ state.gamma) / inner
-    if state.trail is not None:
-        total += _trail_stress(state.trail, radius)
-    return np.asarray(total / np.pi)
+    return np.asarray((total + _trail_stress(state.trail, radius)) / np.pi)
 
 
 def _trail_stress(trail: Array, radius: Array) -> Array:
@@ -216,8 +213,6 @@ def _trail_stress(trail: Array, radius: Array) -> Array:
     (passed, worn), at = trail, radius[:, None]
     ends = np.maximum(passed, at)
     logs = np.log(ends + np.sqrt((ends - at) * (ends + at)))
-    width, step = np.diff(passed), np.diff(worn)
-    wide = width > 0
-    total = np.diff(logs, axis=1) @ np.where(wide, step / np.where(wide, width, 1.0), 0.0)
-    # Where the edge rested, w_c rose at one radius.
-    return np.asarray(total + step[~wide].sum() / inverse_hypot(passed[-1:], radius))
+    # The first steps of the edge are below rounding.
+    width = np.where(np.diff(passed) > 0, np.diff(passed), inf)
+    return np.asarray(np.diff(logs, axis=1) @ (np.diff(worn) / width))
