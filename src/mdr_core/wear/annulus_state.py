@@ -9,6 +9,7 @@ divided by mu E*/G*. In full slip c = 0, and sigma is D - d larger. Source: note
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import acos
 from typing import Final, Self
 
 import numpy as np
@@ -121,7 +122,8 @@ class AnnulusState:
         first = self.initial.stick + self.initial.width
         radius, stop = first + growth, first + most
         slope = 2 * first * stop / (radius**2 * most)
-        values = chebyshev.chebvander(2 * growth * stop / (radius * most) - 1, TILT_TERMS - 1)[0]
+        place = min(max(2 * growth * stop / (radius * most) - 1, -1.0), 1.0)
+        values = np.cos(np.arange(TILT_TERMS) * acos(place))
         return np.asarray(values), np.asarray(slope * (values @ _DERIVATIVE))
 
     @cached_property

@@ -27,8 +27,9 @@ _VANISHED: Final = 1e-3
 _FIRST: Final = 1e-100
 # Distance from a slope jump, as a part of the stick radius, at which the stick edge passes it.
 _AT_BREAK: Final = 1e-3
-# Most evaluations of the rates, one to two seconds. The tightest tolerance takes up to 5,000.
-_MAX_CALLS: Final = 6_000
+# Most evaluations of the rates, one to two seconds. The tightest tolerance takes up to 4,500, the
+# equator of a sphere 4,700.
+_MAX_CALLS: Final = 5_000
 
 
 def integrate(
@@ -110,8 +111,8 @@ def _unresolved(state: AnnulusState, scaled: float) -> AccuracyError:
     detail = (
         f"after about {scaled * initial.cycle_unit:.2g} cycles the {'stick' if passes else 'worn'} "
         f"{'edge moves past' if passes else 'annulus contains'} radius {inside[0]:.6g}, where a "
-        "jump of the profile's slope is not resolved: request fewer cycles, or round the profile "
-        "there"
+        "jump of the profile's slope is not resolved: request fewer cycles or a looser rtol, or "
+        "round the profile there"
     )
     return AccuracyError(detail, ("cycles",))
 
