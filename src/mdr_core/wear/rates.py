@@ -76,27 +76,17 @@ class _MovingAnnulus(AnnulusState):
         stick = np.full(self.x.size, self.stick)
         return np.stack([self.end * self.initial.maps.squares, stick]) / self.x
 
-    @cached_property
-    def inward(self) -> tuple[Array, Array]:
-        """2 z d worn/dz for material that moves inwards, and its gradient in `worn`."""
-        return self._along(self.initial.maps.inward)
-
     @property
     def convected(self) -> tuple[Array, Array]:
         """Rate of `worn` per unit of b'/b, and its gradient in `worn`."""
-        along, gradient = self.inward
+        along, gradient = self._along(self.initial.maps.inward)
         # In full slip the worn depth is b times `worn`.
         if self.initial.full_slip:
             return along - self.worn, gradient - np.eye(along.size)
         return along, gradient
 
-    @cached_property
-    def outward(self) -> tuple[Array, Array]:
-        """2 z d worn/dz for material that moves outwards, and its gradient in `worn`."""
-        return self._along(self.initial.maps.outward)
-
     def _along(self, slope: Array) -> tuple[Array, Array]:
-        """2 z d worn/dz and its gradient in `worn`, by a map to slopes.
+        """2 z d worn/dz and its gradient in `worn`, by one of the two maps to slopes.
 
         Material outside a shrinking stick zone has worn exponentially with its distance from the
         edge, so that v differs by orders of magnitude between neighbours. The slope of ln(v/z)
@@ -112,8 +102,9 @@ class _MovingAnnulus(AnnulusState):
     @property
     def past_stick(self) -> tuple[Array, Array]:
         """Rate of `worn` per unit of the rate of c, and its gradient in `worn`."""
-        along, gradient = self.inward if self.initial.stick_grows else self.outward
-        scale = self.stick / (self.end**2 * self.initial.maps.squares)
+        maps = self.initial.maps
+        along, gradient = self._along(maps.inward if self.initial.stick_grows else maps.outward)
+        scale = self.stick / (self.end**2 * maps.squares)
         return scale * (self.worn + along), scale[:, None] * (np.eye(along.size) + gradient)
 
     @cached_property
