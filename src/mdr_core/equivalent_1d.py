@@ -1,4 +1,4 @@
-"""Equivalent one-dimensional problem: inverses of depth and force, and steps between c and a.
+"""Equivalent one-dimensional problem: steps of depth and force between c and a, and stick edges.
 
 Near incipient slip a difference of two values at a and c suffers cancellation. There the width of
 the slip annulus, in the contact coordinate, is the unknown, and a step over a narrow annulus is an
@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.elementwise import every, full, is_number, number, some, where
+from mdr_core.elementwise import every, full, is_number, some, where
 from mdr_core.inversion import Function, Sloped, invert
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import gauss_legendre, in_order
@@ -27,9 +27,6 @@ _NARROW: Final = 0.05
 _NODES: Final = 16
 # Fraction of the load at full slip up to which the width, not the stick edge, is the unknown.
 EARLY: Final = 0.05
-# Largest logarithm of a radius over the scale of a profile.
-_MAX_LOG: Final = 300.0
-
 # The slope at a coordinate, given as a break and the distance from it as well.
 _Slope = Callable[[Array, Array, Array], Array]
 
@@ -45,28 +42,6 @@ def load_and_slope(profile: Profile, *, of_force: bool) -> Sloped:
         else (profile.depth, profile.depth_slope)
     )
     return lambda coordinate: (load(coordinate), slope(coordinate))
-
-
-def coordinate_from_load(profile: Profile, load: Array, *, of_force: bool) -> Array:
-    """Return the contact coordinate at which F_N/E* or the depth g(a) has the given value.
-
-    Source: mdr-5, Eqs. (5.7), (5.14), (5.59), (5.61); notes, §1.
-
-    Raises InputError beyond the end of the profile.
-    """
-    closed = _closed_inverse(profile, load, of_force=of_force)
-    if closed is not None:
-        return closed
-    if profile.largest_loads is not None:
-        name = "normal_force" if of_force else "indentation_depth"
-        require_inside(("load", name), load > profile.largest_loads[of_force], profile.domain)
-    return _root(profile, load, of_force=of_force)
-
-
-def _closed_inverse(profile: Profile, load: Array, *, of_force: bool) -> Array | None:
-    if of_force:
-        return profile.coordinate_from_reduced_force(load)
-    return profile.coordinate_from_depth(load)
 
 
 def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
@@ -145,8 +120,7 @@ def stick_edge(
         late = coordinate
         if not every(early):
             goal = where(early, 0.0, rest * total)
-            inverse = _closed_inverse(profile, goal, of_force=of_force)
-            late = _root(profile, goal, of_force=of_force) if inverse is None else inverse
+            late = profile.coordinate_from_load(goal, of_force=of_force)
         if not some(early):
             return late, coordinate - late
         target = where(early, ratio * total, 0.0)
@@ -171,31 +145,6 @@ def stick_edge(
         f"{profile.kind}'s slip annulus",
     )
     return where(early, coordinate - width, late), where(early, width, coordinate - late)
-
-
-def _root(profile: Profile, target: Array, *, of_force: bool) -> Array:
-    """Contact coordinate of a load within the domain."""
-    start = _start(profile, target, of_force=of_force)
-    function = load_and_slope(profile, of_force=of_force)
-    low, high = (full(end, start) for end in (profile.first_coordinate, profile.domain))
-
-    def sloped(s: Array) -> tuple[Array, Array]:
-        value, slope = function(s)
-        return value, s * slope / value
-
-    start = where(high < start, high, start)
-    return invert(sloped, target, start, low, high, profile.kind)
-
-
-def _start(profile: Profile, target: Array, *, of_force: bool) -> Array:
-    """First approximation of the contact coordinate, by the power that the load is at the scale."""
-    scale = number(1.0) * profile.scale
-    with np.errstate(all="ignore"):
-        at_scale, slope = load_and_slope(profile, of_force=of_force)(scale)
-        ratio = np.log(target / at_scale) * (at_scale / (scale * slope))
-        # Where a load hardly rises at the scale, its power leads out of the range of doubles.
-        start = scale * np.exp(np.clip(ratio, -_MAX_LOG, _MAX_LOG))
-        return where(start > 0, start, scale)
 
 
 def _step(

@@ -18,13 +18,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from mdr_core.elementwise import every, some, where
-from mdr_core.equivalent_1d import (
-    break_below,
-    coordinate_from_load,
-    depth_step,
-    force_step,
-    has_many_breaks,
-)
+from mdr_core.equivalent_1d import break_below, depth_step, force_step, has_many_breaks
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import cumulative_rule, in_order
@@ -88,7 +82,7 @@ class IntervalMoments:
         """Contact coordinate of a normal coordinate, which rounding may put beyond the domain."""
         if self.profile.largest_loads is not None:
             normal = np.minimum(normal, self.profile.largest_loads[self.over_forces])
-        return coordinate_from_load(self.profile, normal, of_force=self.over_forces)
+        return self.profile.coordinate_from_load(normal, of_force=self.over_forces)
 
     def over(self, low: Array, span: Array, ends: Array) -> Moments:
         """Return the moments over the intervals [low, low + span], shape (m,).

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import validity
 from mdr_core.elementwise import broadcast, common_shape, where
-from mdr_core.equivalent_1d import coordinate_from_load, coordinate_from_radius, load_and_slope
+from mdr_core.equivalent_1d import coordinate_from_radius, load_and_slope
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.materials import Material, normal_modulus
@@ -270,7 +270,7 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
         else:
             of_force = name == "normal_force"
             amount = load / e_star if of_force else load
-            coordinate = coordinate_from_load(profile, amount, of_force=of_force)
+            coordinate = profile.coordinate_from_load(amount, of_force=of_force)
     low, high = extremes(coordinate)
     reach = 10 ** (_DECADES / (2 * profile.steepness + 1))
     if not 1 / reach < low <= high < reach:

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from mdr_core import normal, profiles, tangential
-from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError
 from mdr_core.profiles import (
     CappedParaboloid,
@@ -228,7 +227,7 @@ EVERY = {
 def test_nonpositive_force_is_rejected_for_scalars(kind: str, amount: float) -> None:
     # A sweep relies on this when it leaves the check of the modulus to the contact.
     with np.errstate(invalid="ignore"):
-        assert not coordinate_from_load(EVERY[kind], np.array([amount]), of_force=True)[0] > 0
+        assert not EVERY[kind].coordinate_from_load(np.array([amount]), of_force=True)[0] > 0
 
 
 def test_sweep_over_all_regimes_equals_single_cases() -> None:

@@ -8,7 +8,6 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from mdr_core.elementwise import number
-from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.history import slip_memory
 from mdr_core.history.slip_layout import NORMAL, STEP
 from mdr_core.history.slip_memory import Polyline, VertexTree, read_only
@@ -130,7 +129,7 @@ class ContactState(Results):
         if profile.largest_loads is not None:
             # By rounding a corner may be deeper than the load point.
             depth = min(depth, profile.largest_loads[0])
-        coordinate = coordinate_from_load(profile, depth, of_force=False)
+        coordinate = profile.coordinate_from_depth(depth)
         force = profile.reduced_force(coordinate)
         grown = force - below.force
         if span < SHORT * depth:

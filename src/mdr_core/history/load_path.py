@@ -10,7 +10,6 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.equivalent_1d import coordinate_from_load
 from mdr_core.errors import InputError
 from mdr_core.history.contact_state import ContactState
 from mdr_core.history.saved_state import UNLOADED, SavedState
@@ -97,7 +96,7 @@ class SampledPath:
         # Equal loads get equal coordinates: the last bit may depend on an element's position.
         load, index = np.unique(np.maximum(self.prescribed, 0.0), return_inverse=True)
         of_force = not self.depth_prescribed
-        found = coordinate_from_load(self.start.profile, load, of_force=of_force)
+        found = self.start.profile.coordinate_from_load(load, of_force=of_force)
         return np.asarray(found[index])
 
     @property

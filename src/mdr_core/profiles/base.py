@@ -20,12 +20,13 @@ from mdr_core.abel.displacement import (
     slope_integral,
 )
 from mdr_core.abel.stress import stress_integral
-from mdr_core.elementwise import full, number, some
+from mdr_core.elementwise import full, number, some, where
 from mdr_core.errors import Notice
+from mdr_core.inversion import Function, invert
 from mdr_core.profiles.power_functions import StickRatios
 from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.typing import Array, Flags, Indices, Parameter
-from mdr_core.validation import as_numbers, require_positive
+from mdr_core.validation import as_numbers, require_inside, require_positive
 
 # Quantities of a normal contact, as `Profile.closed_forms` names them.
 NORMAL_QUANTITIES: Final = (
@@ -43,6 +44,8 @@ FIELDS: Final = ("pressure", "shear_stress", "slip", "normal_displacement")
 _SHAPE: Final = ("f", "df", "g", "dg", "r", "breaks", "domain", "infinite_pressure_radii")
 _FOR_USERS: Final = ("kind", "formula", "closed_forms", "notices", *_SHAPE)
 _NO_BREAKS: Final = np.empty(0)
+# Largest logarithm of a radius over the scale of a profile.
+_MAX_LOG: Final = 300.0
 
 
 class Profile(ABC):
@@ -292,13 +295,49 @@ class Profile(ABC):
         flat = self.contact_radius(full(0.0, coordinate)) * np.square(depth)
         return flat + power_law_integral(density, coordinate, self.scale)
 
-    def coordinate_from_depth(self, depth: Array) -> Array | None:
-        """Inverse of `depth` where it has a closed form, else None."""
-        return None
+    def coordinate_from_load(self, load: Array, *, of_force: bool) -> Array:
+        """Contact coordinate at which F_N/E* [length^2] or the depth g(a) [length] has a value.
 
-    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array | None:
-        """Inverse of `reduced_force` where it has a closed form, else None."""
-        return None
+        Source: mdr-5, Eqs. (5.7), (5.14), (5.59), (5.61); notes, §1.
+
+        Raises InputError beyond the end of the profile.
+        """
+        if of_force:
+            return self.coordinate_from_reduced_force(load)
+        return self.coordinate_from_depth(load)
+
+    def coordinate_from_depth(self, depth: Array) -> Array:
+        """Inverse of `depth`, iterated where it has no closed form."""
+        if self.largest_loads is not None:
+            beyond = depth > self.largest_loads[0]
+            require_inside(("load", "indentation_depth"), beyond, self.domain)
+        return self._root(self.depth, self.depth_slope, depth)
+
+    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
+        """Inverse of `reduced_force`, iterated where it has no closed form."""
+        if self.largest_loads is not None:
+            beyond = reduced_force > self.largest_loads[1]
+            require_inside(("load", "normal_force"), beyond, self.domain)
+        return self._root(self.reduced_force, self.force_slope, reduced_force)
+
+    def _root(self, load: Function, slope: Function, target: Array) -> Array:
+        """Contact coordinate at which a load has a value within the domain."""
+        scale = number(1.0) * self.scale
+        with np.errstate(all="ignore"):
+            # The first approximation follows the power that the load is at the scale.
+            at_scale = load(scale)
+            ratio = np.log(target / at_scale) * (at_scale / (scale * slope(scale)))
+            # Where a load hardly rises there, its power leads out of the range of doubles.
+            start = scale * np.exp(np.clip(ratio, -_MAX_LOG, _MAX_LOG))
+            start = where(start > 0, start, scale)
+        low, high = (full(end, start) for end in (self.first_coordinate, self.domain))
+
+        def sloped(s: Array) -> tuple[Array, Array]:
+            value = load(s)
+            return value, s * slope(s) / value
+
+        start = where(high < start, high, start)
+        return invert(sloped, target, start, low, high, self.kind)
 
     # The slip annulus.
 
