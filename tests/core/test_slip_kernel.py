@@ -57,3 +57,15 @@ def test_compiled_kernel_is_bit_identical_to_python(
     np.testing.assert_array_equal(intervals, tree.slip_intervals)
     for one, other in zip(each, slip_memory.moved_each(*contacts), strict=True):
         np.testing.assert_array_equal(one, other)
+
+
+def test_intervals_without_room_are_counted() -> None:
+    """No path writes beyond the array, however many segments rounding errors add to the front."""
+    rng = np.random.default_rng(21)
+    loads = rng.normal(0.3, 0.1, 200), np.cumsum(rng.normal(0.0, 0.2, 200))
+    points = LoadPoints(*loads, np.zeros(200, dtype=bool), np.arange(200))
+    tree, _ = slip_memory.follow(slip_memory.separated(0.0, 0.0), points)
+    top, path = np.append(-1, tree.top), np.hstack([np.zeros((2, 1)), tree.path])
+    front = slip_kernel.SlipFront(tree.parent, tree.vertices, top, path, np.empty((7, 5)))
+    count = front.run()
+    assert count == tree.slip_intervals.shape[1] > 200

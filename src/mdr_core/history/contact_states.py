@@ -61,7 +61,7 @@ class ContactStates:
         parent = np.arange(-1, len(vertices) - 1, dtype=np.intp)
         parent[begins[begins < ends]] = -1
         top, rows = np.where(begins < ends, ends - 1, -1), vertices[:, NORMAL:STEP].T
-        tree = VertexTree(parent, rows, top, (-1, 0.0, 0.0), load_points, 0)
+        tree = VertexTree(parent, rows, top, (-1, 0.0, 0.0), load_points)
         return TractionVertices(interval_moments(self.contact.profile, over_forces=False), tree)
 
     @property

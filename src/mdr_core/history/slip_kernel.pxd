@@ -9,7 +9,7 @@ cdef double ROUNDING
 @cython.final
 cdef class PolylineStack:
     cdef double[:, ::1] rows
-    cdef public Py_ssize_t top, changed, highest
+    cdef public Py_ssize_t top, changed
     cdef double x, y
     cdef bint straight
 
@@ -41,7 +41,7 @@ cdef class SlipFront:
     cdef Py_ssize_t[::1] parent, tops
     cdef const double[:, :] vertices
     cdef double[:, ::1] path, intervals
-    cdef Py_ssize_t count
+    cdef Py_ssize_t count, room
     cdef double n, s, n_end, s_end, f_end, b_end
 
     @cython.locals(i=Py_ssize_t)

@@ -40,9 +40,8 @@ class PolylineStack:
         self.top = top
         self.x = x
         self.y = y
-        # Lowest place that the last step has changed, and highest of all steps.
+        # Lowest place that the last step has changed.
         self.changed = top + 1
-        self.highest = top
         # The last step was straight and without slip, so that another one may continue it.
         self.straight = False
 
@@ -77,7 +76,6 @@ class PolylineStack:
                 vertices[1, made] = self.rows[at, SLOPE]
                 made += 1
             tops[i] = number[self.top] if self.top >= 0 else -1
-            self.highest = max(self.highest, self.top)
         return made
 
     def run_each(
@@ -240,8 +238,9 @@ class SlipFront:
     parent, vertices : tree of all polylines, see `PolylineStack.run`.
     tops, path : vertex and coordinates of the load point before the first step and after each,
         shapes (n + 1,) and (2, n + 1).
-    intervals : receives the seven numbers of each interval: normal coordinate of the lower end,
-        length, the three coefficients, upwards, s in full slip, else zero, and the step.
+    intervals : receives the seven numbers of each interval as long as there is room: normal
+        coordinate of the lower end, length, the three coefficients, upwards, s in full slip, else
+        zero, and the step; shape (7, room).
     """
 
     def __init__(
@@ -252,6 +251,7 @@ class SlipFront:
         self.tops = tops
         self.path = path
         self.intervals = intervals
+        self.room = intervals.shape[1]
         self.count = 0
         # Distance of the front from the load point before the step: normal coordinate and anchor.
         self.n = self.s = 0.0
@@ -366,9 +366,10 @@ class SlipFront:
         if span > 0 or s > 0:
             new = self.count
             self.count = new + 1
-            self.intervals[0, new], self.intervals[1, new] = at, span
-            self.intervals[2, new], self.intervals[3, new], self.intervals[4, new] = a, b, c
-            self.intervals[5, new], self.intervals[6, new] = s, i
+            if new < self.room:
+                self.intervals[0, new], self.intervals[1, new] = at, span
+                self.intervals[2, new], self.intervals[3, new], self.intervals[4, new] = a, b, c
+                self.intervals[5, new], self.intervals[6, new] = s, i
 
     def _side(self) -> float:
         """Twice the cross product of the front's distance and the load point's.

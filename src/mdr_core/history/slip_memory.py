@@ -33,12 +33,8 @@ from mdr_core.typing import Array, Flags, Indices
 
 # A step adds at most three vertices: the one on the axis, a corner and the load point.
 _VERTICES: Final = 3
-# Beside the vertices removed, the slip front ends on one segment more, or on the axis.
-_ENDS: Final = 2
 # Numbers of an interval of springs that slip.
 _INTERVAL: Final = 7
-# The load point may divide a segment in two, each of which has three intervals.
-_INTERVALS: Final = 6
 
 
 class LoadPoints(NamedTuple):
@@ -89,8 +85,6 @@ class VertexTree:
     """Vertex and coordinates of the load point before the first step."""
     path: Array
     """Normal and tangential coordinate of each load point, shape (2, n)."""
-    longest: int
-    """Number of vertices of the longest polyline."""
 
     @property
     def normal(self) -> Array:
@@ -136,10 +130,12 @@ class VertexTree:
         """Intervals of springs that slip, seven numbers each: see `slip_kernel.SlipFront`."""
         vertex, *place = self.start
         top, path = np.append(vertex, self.top), np.hstack([np.array(place)[:, None], self.path])
-        most = _INTERVALS * (self.longest + (_VERTICES + _ENDS) * self.top.size)
-        intervals = np.empty((_INTERVAL, most))
-        count = kernel.SlipFront(self.parent, self.vertices, top, path, intervals).run()
-        return intervals[:, :count]
+        count = 3 * (self.parent.size + self.top.size)
+        while True:
+            room, intervals = count, np.empty((_INTERVAL, count))
+            count = kernel.SlipFront(self.parent, self.vertices, top, path, intervals).run()
+            if count <= room:
+                return intervals[:, :count]
 
 
 def follow(start: Polyline, points: LoadPoints) -> tuple[VertexTree, Polyline]:
@@ -156,8 +152,7 @@ def follow(start: Polyline, points: LoadPoints) -> tuple[VertexTree, Polyline]:
     rows, stack = _stacked(start, top.size)
     made = stack.run(path, *steps, number, parent, vertices, top)
     line = Polyline(_polyline_on(stack, rows), *path[:, -1].tolist())
-    longest = stack.highest + 1
-    return VertexTree(parent[:made], vertices[:, :made], top, held.start, path, longest), line
+    return VertexTree(parent[:made], vertices[:, :made], top, held.start, path), line
 
 
 def moved(line: Polyline, normal: float, tangential: float) -> tuple[Polyline, int]:
@@ -206,7 +201,7 @@ def as_tree(line: Polyline, following: Polyline | None = None) -> VertexTree:
     """Return one polyline as a tree without branches, and the step to the following one."""
     count, path = len(line.vertices), np.array((following or line)[1:])[:, None]
     vertices, chain = line.vertices[:, NORMAL:STEP].T, np.arange(-1, count, dtype=np.intp)
-    return VertexTree(chain[:-1], vertices, chain[-1:], (count - 1, *line[1:]), path, count)
+    return VertexTree(chain[:-1], vertices, chain[-1:], (count - 1, *line[1:]), path)
 
 
 def stacked(span: Array, slope: Array, load_step: Indices) -> Polyline:
