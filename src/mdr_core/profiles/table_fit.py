@@ -162,7 +162,7 @@ def _measured(
     if sharp is None:
         sharp = with_tip.score * (1 + _SHARPER_MEASURED / points.x.size) < without.score
     chosen = with_tip if sharp else without
-    coefficients = _by_rows(basis, chosen, np.full_like(chosen.coefficients, np.nan))
+    coefficients = _by_rows(basis, chosen, np.full(basis.heights.shape[1], np.nan))
     # The posterior of the coefficients. Source: wahba.
     spread = _SPREAD * chosen.sigma * chosen.spread
     used = ~basis.free
@@ -177,27 +177,26 @@ def _measured(
 def _not_negative(basis: TableBasis, chosen: "_Spectrum") -> Array:
     """Return the coefficients of least misfit and roughness with g' above the floor.
 
-    They are the nearest ones to those without bounds. Source: lawson-hanson, Ch. 23.
+    Source: lawson-hanson, Ch. 23.
     """
-    floor = np.zeros(basis.heights.shape[1])
+    floor, weight = np.zeros(basis.heights.shape[1]), basis.points.weight
     floor[: basis.size - 1] = 4 * _FLOOR * basis.places[1:]
     bound = ~basis.free
     bound[-1] = chosen.sharp
-    found = chosen.coefficients
+    system = np.vstack([basis.heights * weight[:, None], chosen.rough])
+    right = np.concatenate([basis.points.y * weight, np.zeros(len(chosen.rough))])
+    right -= system @ floor
+    found = floor
     for with_bends in (False, True):
         # A curvature that drops at a break may bring the slope below zero: then it must not drop.
         bound[basis.size : -2 : 2] = with_bends
-        missing, rows = (floor - chosen.coefficients)[bound], chosen.root[bound]
-        unit = np.linalg.norm(np.maximum(missing, 0.0) / np.linalg.norm(rows, axis=1)) or 1.0
-        system, last = np.vstack([rows.T, missing / unit]), np.eye(rows.shape[1] + 1)[-1]
-        factors, _ = nnls(system, last, maxiter=100 * system.shape[1])
+        free = ~bound
+        free[-1] = False
+        used = np.hstack([system[:, bound], system[:, free], -system[:, free]])
+        factors, _ = nnls(used, right, maxiter=100 * used.shape[1])
         met = np.zeros_like(bound)
-        met[bound] = factors > 0
+        met[bound] = factors[: bound.sum()] == 0
         found = _by_rows(basis, chosen, np.where(met, floor, np.nan))
-        while (below := bound & (found < floor)).any():
-            # Rounding errors hid a bound.
-            met |= below
-            found = _by_rows(basis, chosen, np.where(met, floor, np.nan))
         if basis.slopes(found).min() > 0:
             break
     return found
@@ -205,8 +204,7 @@ def _not_negative(basis: TableBasis, chosen: "_Spectrum") -> Array:
 
 def _by_rows(basis: TableBasis, chosen: "_Spectrum", given: Array) -> Array:
     """Return the coefficients of least misfit and roughness of a spectrum, some of them given."""
-    rough = np.sqrt(chosen.weight) * basis.derivative(min(_ROUGH, basis.degree))
-    return _solved(basis, basis.points.weight, rough, given, sharp=chosen.sharp)
+    return _solved(basis, basis.points.weight, chosen.rough, given, sharp=chosen.sharp)
 
 
 def _solved(basis: TableBasis, weight: Array, rough: Array, given: Array, *, sharp: bool) -> Array:
@@ -249,9 +247,9 @@ class _Spectrum:
 
     def __init__(self, basis: TableBasis, uncertainty: float | None, *, sharp: bool) -> None:
         points = basis.points
-        self.sharp = sharp
+        self.sharp, order = sharp, min(_ROUGH, basis.degree)
         matrix, goal = basis.heights * points.weight[:, None], points.y * points.weight
-        smooth, rough = basis.by_roughness(min(_ROUGH, basis.degree), sharp=sharp)
+        smooth, rough = basis.by_roughness(order, sharp=sharp)
         seen, size, right = np.linalg.svd(matrix @ smooth, full_matrices=False)
         # Few points leave directions without misfit and roughness.
         known = size > _OPEN * size[0]
@@ -284,16 +282,13 @@ class _Spectrum:
         self.score = float(score.min())
         self.freedom = float(freedom[at])
         self.most = min(float(freedom[0]), count / _GCV)
-        self.weight = float(weights[at])
+        self.rough = np.sqrt(weights[at]) * basis.derivative(order)
+        """Rows of the roughness."""
         scatter = float(np.sqrt(misfit[at] / max(count - self.freedom, 1.0)))
         self.sigma = max(uncertainty or scatter, 1e-16)
-        found = kept[at] / np.where(size2 > 0, np.sqrt(size2), 1.0)
-        self.coefficients = smooth @ fitted + rough @ (found * part)
         # The points hardly tell the best weight from a smaller one, which leaves more open.
         plausible = min(at, int(np.argmax(score <= score.min() * (1 + _PLAUSIBLE / count))))
-        self.root, self.spread = (
-            np.hstack([smooth, rough / np.sqrt(size2 + weights[one])]) for one in (at, plausible)
-        )
+        self.spread = np.hstack([smooth, rough / np.sqrt(size2 + weights[plausible])])
         """Square root of the inverse of the matrix of misfit and roughness."""
 
 
