@@ -32,8 +32,8 @@ class TableFit:
     """Knots [length], shape (k + 1,)."""
     rows: Array
     """Coefficients of g' by powers of the distance from the knot below, shape (6, k)."""
-    flanks: tuple[tuple[float, float, float], ...]
-    """Break [length], jump of the slope [1] and of the curvature [1/length]."""
+    flanks: list[list[float]]
+    """Jumps of the slope [1] and of the curvature [1/length] at each declared break."""
     rms: float
     """Root mean square of the deviation from the points [length]."""
     largest: tuple[float, float]
@@ -170,11 +170,6 @@ class TableBasis:
         rows[0, 0] = coefficients[-1]
         powers = height / end * end ** -np.arange(float(len(rows)))[:, None]
         jumps = coefficients[self.size - 1 : -2].reshape(-1, 2) * [height / end, height / end**2]
-        flanks = tuple(
-            (b, slope, bend)
-            for b, (slope, bend) in zip(self.points.declared, jumps.tolist(), strict=True)
-            if slope or bend
-        )
         off = self.deviation(coefficients)
         worst = int(np.argmax(np.abs(off)))
         possible = self.spline(spread)
@@ -183,7 +178,7 @@ class TableBasis:
         return TableFit(
             self.knots * end,
             rows * powers,
-            flanks,
+            jumps.tolist(),
             height * root_mean_square(off * np.minimum(self.points.weight, 1.0)),
             (height * float(abs(off[worst])), end * float(self.points.x[worst])),
             (possible.antiderivative(), possible.antiderivative(2)),

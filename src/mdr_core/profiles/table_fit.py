@@ -197,6 +197,8 @@ def _not_negative(basis: TableBasis, chosen: "_Spectrum") -> Array:
         met = np.zeros_like(bound)
         met[bound] = factors[: bound.sum()] == 0
         found = _by_rows(basis, chosen, np.where(met, floor, np.nan))
+        # Rounding errors may hide a bound.
+        found[bound] = np.maximum(found, floor)[bound]
         if basis.slopes(found).min() > 0:
             break
     return found

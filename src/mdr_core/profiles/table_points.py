@@ -40,8 +40,6 @@ class TablePoints:
     weight: Array
     """Weight of the deviation: square root of the number of points that were merged."""
     breaks: tuple[float, ...]
-    declared: tuple[float, ...]
-    """Breaks as they are given [length]."""
     rounded: bool
     """True if radii or heights show that they are rounded; the weights are those of that error."""
     scale: tuple[float, float]
@@ -75,8 +73,7 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
         typical = float(np.median(error[error > 0]))
         weight = weight * typical / np.maximum(error, _LEAST_ERROR * typical)
     scaled = tuple(b / end for b in breaks)
-    declared = tuple(breaks)
-    return TablePoints(x, y, weight, scaled, declared, rounded, (end, height))
+    return TablePoints(x, y, weight, scaled, rounded, (end, height))
 
 
 def off_axis(r: Array, f: Array) -> str:

@@ -198,7 +198,8 @@ class Tabulated(Profile):
     @cached_property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         tip = () if self._spline.smooth_tip else (0.0,)
-        return (*tip, *(b for b, slope, _ in self.fit.flanks if slope != 0))
+        jumps = zip(self._breaks, self.fit.flanks, strict=True)
+        return (*tip, *(b for b, (slope, _) in jumps if slope != 0))
 
     @property
     def tip_pressure(self) -> float:
@@ -209,7 +210,7 @@ class Tabulated(Profile):
         """Profiles that are added beyond the breaks, with their coefficients."""
         return tuple(
             (factor, shape)
-            for b, slope, bend in self.fit.flanks
+            for b, (slope, bend) in zip(self._breaks, self.fit.flanks, strict=True)
             for factor, shape in ((slope, TruncatedCone(b, 1.0)), (bend, RoundedPunch(b, 1.0)))
             if factor != 0
         )
