@@ -145,10 +145,6 @@ class IntervalMoments:
         edge = 1 / twice if self.over_forces else twice
         return where(apart, conjugate / where(apart, normal, 1.0), edge)
 
-    def _slope(self, s: Array) -> Array:
-        """Derivative of the normal coordinate with respect to the contact coordinate."""
-        return (self.profile.force_slope if self.over_forces else self.profile.depth_slope)(s)
-
     @cached_property
     def _between(self) -> Array:
         """Moments from each break to each later one, shape (3, k, k)."""
@@ -231,16 +227,8 @@ class IntervalMoments:
             smooth in the root of the distance from it.
         """
         profile, (start, stop) = self.profile, ends
-        width = stop - start
-        from_pole = np.where(base > 0, inf, profile.pole - stop)
-        thin = width * width < _EPS * stop * np.minimum(stop - base, from_pole)
-        if some(thin):
-            slope = self._slope(stop)
-            # An interval may end where g becomes constant.
-            slope = np.where(slope > 0, slope, self._slope(start))
-            with np.errstate(divide="ignore"):
-                estimate = span / slope
-            width = np.where(thin & (estimate > 0), np.minimum(estimate, stop), width)
+        # The moments do not depend on the width itself, which may be below rounding error.
+        width = np.maximum(stop - start, _EPS * stop)
         share, weights, cumulative = cumulative_rule(_POINTS)
         place, moved = stop - width * (1 - share), np.broadcast_to(width, (_POINTS, span.size))
         if some(base > 0):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from mdr_core.interval_moments import IntervalMoments, interval_moments
-from mdr_core.profiles import Cone, Paraboloid, SphericalTipCone
+from mdr_core.profiles import Cone, Paraboloid, PowerTerm, Series, SphericalTipCone
 
 SLOPE, RADIUS = 0.3, 1.7
 BERNSTEIN = (lambda t: (1 - t) ** 2, lambda t: 2 * t * (1 - t), lambda t: t * t)
@@ -104,3 +104,24 @@ def test_moments_on_the_flank_of_a_steep_spherical_tip(ratio):
 
             places = [0, *(end / 4**i for i in range(4, -1, -1))]
             assert abs(value / mpmath.quad(density, places) - 1) < 1e-12
+
+
+def test_moments_of_a_narrow_interval_where_the_slope_falls_to_zero():
+    """int B_k(t) 2 dx over 1e-8 of the radius, 1e-7 from the end of a series."""
+    profile = Series((PowerTerm(1.0, 2.0), PowerTerm(-0.1, 4.0)))
+    high = profile.domain * (1 - 1e-7)
+    ends = np.array([[high * (1 - 1e-8)], [high]])
+    with mpmath.workdps(40):
+
+        def g(x):
+            return 2 * x**2 - mpmath.mpf(8) / 3 * mpmath.mpf(-profile.terms[1].coefficient) * x**4
+
+        start, stop = (mpmath.mpf(float(end)) for end in ends[:, 0])
+        span = g(stop) - g(start)
+        expected = [
+            2 * mpmath.quad(lambda x, b=b: b((g(x) - g(start)) / span), [start, stop])
+            for b in BERNSTEIN
+        ]
+        given = np.array([float(g(start))]), np.array([float(span)]), ends
+        found = IntervalMoments(profile, over_forces=False).over(*given)
+    assert found.weights[:, 0] == pytest.approx(np.array(expected, dtype=float), rel=1e-6, abs=0)
