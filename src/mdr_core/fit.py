@@ -343,13 +343,20 @@ class _Model:
             return self.at(at(x))[1] * unit / size
 
         first = np.array([start[name] for name in self.fit]) / unit
-        found = least_squares(
-            *(residual, first, jacobian, bounds),
-            x_scale="jac",
-            ftol=_CONVERGED,
-            xtol=_CONVERGED,
-            gtol=None,
-        )
+        try:
+            with np.errstate(all="ignore"):
+                found = least_squares(
+                    *(residual, first, jacobian, bounds),
+                    x_scale="jac",
+                    ftol=_CONVERGED,
+                    xtol=_CONVERGED,
+                    gtol=None,
+                )
+        except (ValueError, np.linalg.LinAlgError):
+            found = None
+        if found is None or not np.isfinite(found.x).all():
+            detail = "does not determine the parameters: measure deeper, or fit fewer of them"
+            raise InputError(("indentation_depth",), detail)
         return at(found.x)
 
     def at(self, parameters: _Parameters) -> tuple[Array, Array]:
@@ -420,6 +427,8 @@ class _Model:
         rank = np.empty(count)
         rank[np.argsort(self.depth, kind="stable")] = np.linspace(-1, 1, count)
         degrees = min(_DEGREES, (count - fitted) // 3)
+        if not degrees:
+            return by_size
         basis, _ = np.linalg.qr(np.hstack([slopes, legendre.legvander(rank, degrees)[:, 1:]]))
         left = residual - basis @ (basis.T @ residual)
         free = count - basis.shape[1]

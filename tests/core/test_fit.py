@@ -279,6 +279,29 @@ def test_too_few_points_in_contact_are_refused() -> None:
         fit.solve(mdr.Paraboloid(1.0), indentation_depth=depth, normal_force=force, fit=ALL)
 
 
+def test_curves_that_leave_parameters_open_are_refused_or_finite() -> None:
+    """Noise, constant forces and few points under every shape."""
+    random, refused = np.random.default_rng(6), 0
+    for profile in SHAPES.values():
+        for count, names in ((3, ("e_star",)), (5, ALL[:2]), (7, ALL), (9, ("contact_point",))):
+            depth = np.sort(random.uniform(-5e-3, 1e-2, count))
+            known = {} if "e_star" in names else {"e_star": E_STAR}
+            for force in (random.standard_normal(count), np.ones(count), np.zeros(count)):
+                try:
+                    found = fit.solve(
+                        profile,
+                        indentation_depth=depth,
+                        normal_force=force,
+                        fit=names,
+                        **known,
+                    )
+                except mdr.InputError:
+                    refused += 1
+                else:
+                    assert np.isfinite([found.e_star, *found.standard_errors, found.misfit]).all()
+    assert refused
+
+
 def test_curve_that_is_deeper_than_the_profile_is_refused() -> None:
     table = mdr.Tabulated(np.linspace(0, 0.05, 20), np.linspace(0, 0.05, 20) ** 2)
     with pytest.raises(mdr.InputError, match="beyond the end"):
