@@ -17,7 +17,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from mdr_core.elementwise import every, some, where
+from mdr_core.elementwise import some, where
 from mdr_core.equivalent_1d import break_below, depth_step, force_step, has_many_breaks
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
@@ -175,8 +175,6 @@ class IntervalMoments:
         if some(profile.first_radius > 0):
             wide &= profile.contact_radius(ends[1]) > _SHALLOW * profile.first_radius
         closed, by_rule = wide & long, ~wide & long
-        if every(by_rule):
-            return self.over_narrow(span, ends, base)
         if some(closed):
             weights[:, closed] = self._part(closed).over_wide(span[closed], ends[:, closed])
         if some(by_rule):
