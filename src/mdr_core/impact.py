@@ -99,6 +99,11 @@ class Impact(validity.ContactResults):
         return self.normal.normal_force
 
     @property
+    def slips_from(self) -> Array:
+        """Least radius with slip [length], in full slip alone; else infinite."""
+        return np.where(self.regime == "full_slip", 0.0, np.inf)
+
+    @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
         return self.normal.warnings_with(self.rtol, self.error_estimate)

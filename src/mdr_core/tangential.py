@@ -252,6 +252,11 @@ class TangentialContact(validity.ContactResults):
         return condition + where(self.excess > 0, self.limiting_force * size / energy, 0.0)
 
     @property
+    def slips_from(self) -> Array:
+        """Least radius with slip [length]; infinite without."""
+        return where(self.full_slip | (self.slip_width > 0), self.stick_radius, np.inf)
+
+    @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
         return self.normal.warnings_with(self.normal.rtol, self.error_estimate)

@@ -85,6 +85,8 @@ class SolvedContact(Protocol):
     @property
     def g_star(self) -> Parameter | None: ...
     @property
+    def slips_from(self) -> Parameter: ...
+    @property
     def solved(self) -> "SolvedContact": ...
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]: ...
@@ -92,6 +94,11 @@ class SolvedContact(Protocol):
 
 class ContactResults(Results):
     """Results of a contact, with its warnings."""
+
+    @property
+    def slips_from(self) -> Parameter:
+        """Least radius with slip in each case [length]; infinite without."""
+        return np.inf
 
     @property
     def solved(self: SolvedContact) -> SolvedContact:
@@ -152,8 +159,7 @@ def findings(contact: SolvedContact, material: Material | None) -> list[Finding]
     contact : contact with or without friction, or load history; for wear the one before wear.
     material : effective moduli, as from `from_bodies`; None where they are unknown.
     """
-    slips = contact.g_star is not None
-    found = of_normal_contact(contact.normal, material, slips=slips)
+    found = of_normal_contact(contact.normal, material, contact.slips_from)
     if contact.g_star is not None:
         beta = None if material is None else material.dundurs_beta
         found.append(of_moduli(contact.normal.e_star, contact.g_star, beta))
@@ -192,7 +198,7 @@ def smoothed(contact: LoadedContact, profile: Tabulated) -> Finding:
 
 
 def of_normal_contact(
-    contact: LoadedContact, material: Material | None = None, *, slips: bool = False
+    contact: LoadedContact, material: Material | None = None, slips_from: Parameter = np.inf
 ) -> list[Finding]:
     """Return `half_space`, `thin_body` and `plastic`.
 
@@ -202,7 +208,7 @@ def of_normal_contact(
     a tenth of the thickness. `plastic`: the deviatoric stress is infinite somewhere, which no
     material can bear.
 
-    With `slips`, there is friction: slip may reach any radius.
+    `slips_from` is the least radius with slip in each case [length].
 
     Source: hay; notes, §8.
     """
@@ -227,17 +233,18 @@ def of_normal_contact(
 
     ratios = () if material is None else material.poissons_ratios
 
+    def yields(radius: Parameter) -> Flags:
+        return infinite_deviator(contact.profile, radius, ratios, slips_from)
+
     def places() -> str:
         return (
-            f"the elastic pressure is infinite at radius {_infinite_radii(contact)}: "
+            f"the elastic pressure is infinite at radius {_infinite_radii(contact, yields)}: "
             "a real material yields there under any load; round the tip or edge"
         )
 
     exceeds = error > _HALF_SPACE_ERROR
     steep = Finding("half_space", exceeds, message, error, 0.01, "finite_elements")
-    yields = infinite_deviator(contact.profile, 0.0, ratios, 0.0 if slips else np.inf)
-    infinite = _infinite_pressure(contact) & yields
-    plastic = Finding("plastic", infinite, places, instead="rounded_tip")
+    plastic = Finding("plastic", _infinite(contact, yields), places, instead="rounded_tip")
     if material is None or material.body_thickness is None:
         return [steep, plastic]
     return [steep, _thin_body(contact, material), plastic]
@@ -324,9 +331,13 @@ def infinite_maximum(contact: LoadedContact) -> Finding:
     """Return `singular`: loads under which the pressure is infinite somewhere."""
 
     def message() -> str:
-        return f"maximum_pressure is infinite, at radius {_infinite_radii(contact)}"
+        return f"maximum_pressure is infinite, at radius {_infinite_radii(contact, _always)}"
 
-    return Finding("singular", _infinite_pressure(contact), message)
+    return Finding("singular", _infinite(contact, _always), message)
+
+
+def _always(_radius: Parameter) -> bool:
+    return True
 
 
 def infinite_deviator(
@@ -352,19 +363,21 @@ def infinite_deviator(
     return np.isinf(profile.tip_pressure) | (radius >= slips_from)
 
 
-def _infinite_pressure(contact: LoadedContact) -> Flags:
+def _infinite(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool]) -> Flags:
+    """Return whether the pressure is infinite at a radius that counts."""
     found = contact.contact_radius < 0
     for b in contact.profile.infinite_pressure_radii:
-        found = found | (contact.loaded & (b <= contact.contact_radius))
+        found = found | (contact.loaded & (b <= contact.contact_radius) & counts(b))
         if every(found):
             break
     return found
 
 
-def _infinite_radii(contact: LoadedContact) -> str:
-    """Radii of infinite pressure in the largest contact, as text."""
+def _infinite_radii(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool]) -> str:
+    """Radii of infinite pressure in the largest contact that count in some case, as text."""
     largest = extremes(contact.contact_radius)[1]
-    least = (extremes(b)[0] for b in contact.profile.infinite_pressure_radii)
+    radii = contact.profile.infinite_pressure_radii
+    least = (extremes(b)[0] for b in radii if some(counts(b)))
     return listed([f"{b:.12g}" for b in least if b <= largest])
 
 

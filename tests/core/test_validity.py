@@ -48,18 +48,28 @@ def sticking(contact: normal.NormalContact, g_star: float) -> tangential.Tangent
 
 
 def test_infinite_deviatoric_stress() -> None:
-    """At a tip or slope discontinuity of incompressible bodies it is finite without friction."""
+    """At a tip or slope discontinuity of incompressible bodies it is finite where nothing slips."""
     rubber, steel = bodies(0.5), bodies(0.3)
     for profile in (Cone(0.01), TruncatedCone(0.5, 0.01)):
         contact = normal.solve(profile, rubber.e_star, contact_radius=1.0)
         assert warnings_of(contact, rubber) == {}
-        slips = tangential.solve(contact, rubber.g_star, 0.3, stick_radius=0.0)
-        assert set(warnings_of(slips, rubber)) == {"plastic"}
+        for c, codes_ in ((0.8, set()), (0.0, {"plastic"})):
+            slips = tangential.solve(contact, rubber.g_star, 0.3, stick_radius=c)
+            assert set(warnings_of(slips, rubber)) == codes_
         assert set(warnings_of(contact, steel)) == {"plastic"}
     beneath_rigid = from_bodies([RIGID, Body(1.0, 0.5)])
     for profile in (Power(1e-3, 0.9), FlatPunch(1.0)):
         sharper = normal.solve(profile, rubber.e_star, normal_force=1e-3)
         assert set(warnings_of(sharper, beneath_rigid)) == {"plastic"}
+
+
+def test_warning_lists_the_radii_of_infinite_deviatoric_stress_only() -> None:
+    rubber, r = bodies(0.5), np.arange(6.0)
+    table = Tabulated(r, 1e-3 * (r + np.maximum(r - 3, 0)), breaks=(3.0,))
+    contact = normal.solve(table, rubber.e_star, contact_radius=3.5)
+    slips = tangential.solve(contact, rubber.g_star, 0.3, stick_radius=2.5)
+    message = warnings_of(slips, rubber)["plastic"].message()
+    assert message.startswith("the elastic pressure is infinite at radius 3: ")
 
 
 def test_flat_punch_slips_nowhere_or_everywhere() -> None:
