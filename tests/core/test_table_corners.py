@@ -167,7 +167,8 @@ def test_history_next_to_the_edge_of_a_flat() -> None:
     found, expected = (
         history.solve(each, 1.0, 0.9, 0.1, **path).tangential_energy for each in (table, cone)
     )
-    assert found == pytest.approx(expected, rel=1e-6, abs=0)
+    # The third load is a remainder of the second: energies have digits of the largest of the path.
+    assert found == pytest.approx(expected, rel=1e-6, abs=1e-12 * expected.max())
 
 
 @pytest.mark.parametrize("count", [40, 200])
