@@ -96,7 +96,8 @@ def invert(
             low = where(value < goal, s, low)
             high = where(value > goal, s, high)
             last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
-            halved = 2 * abs(residual) <= before
+            # Far away the steps are cut, which is slower.
+            halved = (2 * abs(residual) <= before) | ~(size < _MAX_LOG_STEP)
             usable = ((proposed > low) & (proposed < high) & halved) | last
             before = abs(residual)
             moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))

@@ -88,3 +88,16 @@ def test_unreachable_target_raises() -> None:
             2 * one + np.inf,
             "step",
         )
+
+
+def test_root_below_the_range_of_doubles_is_zero() -> None:
+    """Steps of limited length lead there: they do not halve the residual."""
+    root = invert(
+        lambda s: (s**0.125, np.full(s.shape, 0.125)),
+        np.array([1e-50]),
+        np.array([1.0]),
+        np.zeros(1),
+        np.full(1, np.inf),
+        "power",
+    )
+    assert root == 0

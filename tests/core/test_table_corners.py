@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from scipy.sparse import csr_matrix
 
 from mdr_core import fields, history, tangential
+from mdr_core.abel.slope_pieces import heights
 from mdr_core.errors import InputError
 from mdr_core.normal import solve
 from mdr_core.profiles import Sphere, Tabulated, TruncatedCone, TruncatedParaboloid
@@ -210,3 +212,18 @@ def test_depth_just_beyond_a_break_of_few_points() -> None:
     depth = 1.8069165676637576e-05
     contact = solve(table, 1.0, indentation_depth=depth)
     assert table.g(contact.contact_radius) == pytest.approx(depth, rel=1e-12, abs=0)
+
+
+def test_nodes_stay_in_their_piece() -> None:
+    """Rounding errors led beyond a first piece that is far thinner than the others."""
+    knots = np.array([0.0, 5.63e-15, 1.126e-9, 2.252e-9, 0.292, 1.0])
+    seen: list[np.ndarray] = []
+
+    def basis(x: np.ndarray) -> csr_matrix:
+        seen.append(x)
+        return csr_matrix(np.ones((x.size, 1)))
+
+    # g' = 1 is a cone: f = (2/pi) r.
+    found = heights(knots, knots[1:], basis)[:, 0]
+    assert found == pytest.approx(2 / np.pi * knots[1:], rel=1e-9, abs=0)
+    assert all(0 < x.min() <= x.max() <= 1 for x in seen)

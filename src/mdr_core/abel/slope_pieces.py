@@ -28,6 +28,8 @@ _FAR: Final = 2.0
 _FAR_NODES, _FAR_WEIGHTS = composite_rule(8)
 # Nodes of a piece next to r.
 _NEAR_NODES, _NEAR_WEIGHTS = composite_rule(16)
+# Distance of every place from the lower end of its piece, over the length of that.
+_BESIDE: Final = 1e-20
 # Sorted radii that share their far pieces.
 _BLOCK: Final = 16
 # Radii whose near pieces are held at once: 40 MiB.
@@ -77,6 +79,9 @@ def integrals(
     distance = np.maximum(sign * (inner[piece] - at), 0.0)
     reach = np.minimum(length[piece], sign * (outer[piece] - at))
     places, root, weight = near_rule(at, distance, reach, sign)
+    # Next to an end rounding error may lead beyond it, where a spline is not defined, or to x = 0.
+    low, high = left + _BESIDE * length, left + length
+    places = np.clip(places, low[piece, None], high[piece, None])
     values = (weight * kernel(places, root)).ravel()
     ends = _NEAR_NODES.size * np.searchsorted(point, np.arange(r.size + 1))
     spread = sparse.csr_matrix((values, np.arange(values.size), ends), (r.size, values.size))
