@@ -16,6 +16,8 @@ Sloped = Callable[[Array], tuple[Array, Array]]
 
 # Bisection alone takes about 130 steps from bounds 1e50 apart, Newton's method 5 to 10.
 _MAX_STEPS: Final = 200
+# Newton's steps without bisections between them.
+_ALONE: Final = 20
 # Newton's step after which one more follows: the slope may be that of the other side of a
 # discontinuity, at which convergence is not quadratic.
 _LAST_BUT_ONE: Final = 1e-10
@@ -46,9 +48,9 @@ def invert(
     """Return s with function(s) = target for an increasing function.
 
     Newton's method in log(s) and log(function), which all profiles make nearly straight. [low,
-    high] brackets the root and shrinks by the signs of the residual; a step that leaves it, or
-    follows one that did not halve the residual, is replaced by its middle: beside a break the steps
-    can lead from one side to the other and back.
+    high] brackets the root and shrinks by the signs of the residual; a step that leaves it is
+    replaced by its middle, and after many steps every second one: beside a break they can lead from
+    one side to the other and back.
 
     Parameters
     ----------
@@ -72,9 +74,8 @@ def invert(
     s, root_at_zero = start, low
     done = ~positive
     settling = done & positive
-    before = inf
     with np.errstate(all="ignore"):
-        for _ in range(_MAX_STEPS):
+        for count in range(_MAX_STEPS):
             value, slope = function(s)
             residual = np.log(goal / value)
             known = (slope > 0) & (slope < inf)
@@ -96,10 +97,9 @@ def invert(
             low = where(value < goal, s, low)
             high = where(value > goal, s, high)
             last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
-            # Far away the steps are cut, which is slower.
-            halved = (2 * abs(residual) <= before) | ~(size < _MAX_LOG_STEP)
-            usable = ((proposed > low) & (proposed < high) & halved) | last
-            before = abs(residual)
+            usable = (
+                (proposed > low) & (proposed < high) & (count < _ALONE or count % 2 == 1)
+            ) | last
             moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))
             moved = where(moved < _LARGEST, where(moved > 1 / _LARGEST, moved, 0.0), inf)
             # A converged root stays: it does not depend on how long the others take.
