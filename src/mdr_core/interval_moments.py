@@ -32,6 +32,8 @@ _POINTS: Final = 16
 # contact coordinate, or the distance from a pole of the slope, by more than the second, beyond a
 # break by the third. Differences of closed forms over a wide interval hardly suffer cancellation.
 _WIDE_IN_NORMAL, _WIDE, _WIDE_BEYOND_BREAK = 16.0, 3.0, 1.3
+# The same between two breaks of a table, where the slope is a polynomial, and may nearly vanish.
+_WIDE_IN_TABLE: Final = 2.5
 # Below this multiple of the flat's radius the contact radius hardly changes: differences cancel.
 _SHALLOW: Final = 1.5
 _EPS: Final = float(np.finfo(float).eps)
@@ -170,7 +172,8 @@ class IntervalMoments:
         profile, weights, long = self.profile, np.zeros((3, low.size)), span > 0
         start, stop = profile.pole - ends
         wide = (start > _WIDE * stop) | (low + span > _WIDE_IN_NORMAL * low)
-        limit = np.where(base > 0, _WIDE_BEYOND_BREAK, _WIDE)
+        beyond = _WIDE_IN_TABLE if has_many_breaks(profile) else _WIDE_BEYOND_BREAK
+        limit = np.where(base > 0, beyond, _WIDE)
         wide = (ends[1] > limit * ends[0]) | (wide & (base == 0))
         if some(profile.first_radius > 0):
             wide &= profile.contact_radius(ends[1]) > _SHALLOW * profile.first_radius

@@ -227,3 +227,30 @@ def test_nodes_stay_in_their_piece() -> None:
     found = heights(knots, knots[1:], basis)[:, 0]
     assert found == pytest.approx(2 / np.pi * knots[1:], rel=1e-9, abs=0)
     assert all(0 < x.min() <= x.max() <= 1 for x in seen)
+
+
+@pytest.mark.parametrize("part", [1e-2, 1e-5, 1e-8])
+def test_work_of_friction_where_noise_leaves_a_flat(part: float) -> None:
+    """W = (2 mu^2 E*^2/G*) int_c^a (g(a) - g) (g - g(c)) dx, both factors as integrals of g'."""
+    r = np.linspace(0.0, 3.0, 251)
+    noise = np.random.default_rng(5).normal(0.0, 2e-5, r.size)
+    table = Tabulated(r, 0.02 * np.square(np.maximum(r - 1.0, 0.0)) + noise)
+    contact = solve(table, 1.0, contact_radius=0.178)
+    moved = 0.3 * part * float(contact.indentation_depth)
+    found = tangential.solve(contact, 1.0, 0.3, tangential_displacement=moved)
+    c, edges = float(found.stick_radius), table.fit.edges
+    ends = np.concatenate([[c], edges[(edges > c) & (edges < 0.178)], [0.178]])[:, None, None]
+    nodes, weights = (each[:, None] for each in np.polynomial.legendre.leggauss(24))
+    half = np.diff(ends, axis=0) / 2
+    x = ends[:-1] + half * (1 + nodes)
+
+    def rise(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        at = low + (high - low) / 2 * (1 + nodes[:, 0])
+        return np.asarray((high - low) / 2 * (table.dg(at) @ weights))
+
+    whole = rise(ends[:-1], ends[1:])
+    below = np.cumsum(whole, axis=0) - whole + rise(ends[:-1], x)
+    above = np.cumsum(whole[::-1], axis=0)[::-1] - whole + rise(x, ends[1:])
+    expected = 2 * 0.3**2 * float(np.sum(half * weights * below * above))
+    # Next to no slip the stick radius has fewer digits.
+    assert float(found.dissipated_energy) == pytest.approx(expected, rel=1e-6, abs=0)

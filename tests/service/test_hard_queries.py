@@ -32,6 +32,7 @@ def test_hard_query_returns_finite_numbers_or_a_pointer(client: Client, name: st
     document = strict_json.loads(response.content)
     if response.status_code == 200:
         assert 0 < document["error_estimate"] < 1
+        assert min(document.get("dissipated_energy", [0.0])) >= 0
     else:
         assert response.status_code == 422
         assert response.headers["content-type"] == MEDIA_TYPE
