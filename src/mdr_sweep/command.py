@@ -58,11 +58,20 @@ def run(arguments: argparse.Namespace) -> int:
         return _exit(f"{error.name} is missing; {remedy}", _FAILED)
     except UsageError as error:
         return _exit(error, _INVALID_INPUT)
-    except (SweepError, OSError) as error:
-        return _exit(f"{error}; {_RESUME}", _FAILED)
-    except KeyboardInterrupt:
-        return _exit(f"interrupted; {_RESUME}", _INTERRUPTED)
+    except (KeyboardInterrupt, Exception) as error:
+        if _is_interrupt(error):
+            return _exit(f"interrupted; {_RESUME}", _INTERRUPTED)
+        if isinstance(error, SweepError | OSError):
+            return _exit(f"{error}; {_RESUME}", _FAILED)
+        raise
     return status
+
+
+def _is_interrupt(error: BaseException | None) -> bool:
+    """Return True for an interrupt, or an error while workers are closed after one."""
+    while error and not isinstance(error, KeyboardInterrupt):
+        error = error.__context__
+    return error is not None
 
 
 def _exit(message: object, status: int) -> int:

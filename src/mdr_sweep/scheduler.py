@@ -1,5 +1,6 @@
 """Distribution of chunks over the workers of a Dask scheduler, on this machine or a cluster."""
 
+import logging
 from collections.abc import Generator, Iterable
 from concurrent.futures import CancelledError
 from importlib import import_module
@@ -38,7 +39,13 @@ def in_workers(
     """
     distributed = import_module("distributed")
     import_module("dask").config.set(_SETTINGS)
-    local = {"n_workers": processes, "threads_per_worker": 1, "dashboard_address": None}
+    # Workers that are closed while they report write tracebacks; what counts is raised here.
+    local = {
+        "n_workers": processes,
+        "threads_per_worker": 1,
+        "dashboard_address": None,
+        "silence_logs": logging.CRITICAL,
+    }
     try:
         with distributed.Client(**({"address": address} if address else local)) as client:
             limit = _AHEAD * max(sum(client.nthreads().values()), 1)
