@@ -27,9 +27,7 @@ from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags
 from mdr_core.validation import (
-    FINITE,
-    as_numbers,
-    first_index,
+    as_curve,
     require_single_positive,
     require_type,
 )
@@ -201,13 +199,9 @@ def solve(
 
 def _curve(indentation_depth: ArrayLike, normal_force: ArrayLike) -> tuple[Array, Array]:
     """Return depths and forces, or an InputError."""
-    depth = np.atleast_1d(as_numbers(("indentation_depth",), indentation_depth))
-    force = np.atleast_1d(as_numbers(("normal_force",), normal_force))
-    for name, values in (("indentation_depth", depth), ("normal_force", force)):
-        if not np.isfinite(values).all():
-            raise InputError((name, *first_index(~np.isfinite(values))), FINITE)
-    if depth.shape != force.shape:
-        raise InputError(("normal_force",), f"has {force.size} values for {depth.size} depths")
+    depth, force = as_curve(
+        "depths", indentation_depth=indentation_depth, normal_force=normal_force
+    )
     if np.ptp(depth) == 0:
         raise InputError(("indentation_depth",), "must hold different depths")
     return depth, force

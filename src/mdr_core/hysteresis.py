@@ -16,7 +16,7 @@ from mdr_core import tangential
 from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.typing import Array
-from mdr_core.validation import FINITE, as_numbers, first_index, require_type
+from mdr_core.validation import as_curve, require_type
 
 # Amplitudes that are tried first, over that of full slip.
 _TRIED: Final = np.geomspace(0.01, 30.0, 24)
@@ -127,14 +127,9 @@ def solve(
 
 def _points(displacement: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
     """Return displacements and forces, or an InputError."""
-    given = {"tangential_displacement": displacement, "tangential_force": force}
-    u, measured = (np.atleast_1d(as_numbers((name,), given[name])) for name in given)
-    for name, values in zip(given, (u, measured), strict=True):
-        if not np.isfinite(values).all():
-            raise InputError((name, *first_index(~np.isfinite(values))), FINITE)
-    if u.shape != measured.shape:
-        detail = f"has {measured.size} values for {u.size} displacements"
-        raise InputError(("tangential_force",), detail)
+    u, measured = as_curve(
+        "displacements", tangential_displacement=displacement, tangential_force=force
+    )
     if u.size < _FEWEST or np.ptp(u) == 0:
         raise InputError(("tangential_displacement",), f"must hold {_FEWEST} points of a loop")
     return u, measured

@@ -126,6 +126,21 @@ def require_finite(path: tuple[str | int, ...], values: Array) -> None:
         raise InputError((*path, *first_index(bad)), FINITE, bad)
 
 
+def as_curve(places: str, **given: ArrayLike) -> tuple[Array, Array]:
+    """Return two lists of a measured curve by their names, as arrays of one length.
+
+    Raises InputError for numbers that are not finite, and for lists of different lengths, in which
+    `places` stands for the values of the first.
+    """
+    first, second = (np.atleast_1d(as_numbers((name,), given[name])) for name in given)
+    for name, values in zip(given, (first, second), strict=True):
+        require_finite((name,), values)
+    if first.shape != second.shape:
+        detail = f"has {second.size} values for {first.size} {places}"
+        raise InputError(([*given][1],), detail)
+    return first, second
+
+
 def require_representable(path: tuple[str | int, ...], used: Flags, *results: Array) -> None:
     """Raise InputError at the first load whose results leave the range of double precision.
 
