@@ -148,6 +148,10 @@ def test_points_are_the_numbers_of_the_response(
     else:
         x, *ordinates = DRAWN.get(name, ("tangential_displacement", "tangential_force"))
         expected = [set(zip(found[x], found[y], strict=True)) for y in ordinates]
+        if name == "fit":
+            measured = np.add(found["normal_force"], found["residual"]).tolist()
+            assert measured == pytest.approx(query["normal_force"], rel=1e-12, abs=1e-12)
+            expected[0] |= set(zip(found[x], measured, strict=True))
     assert len(axes) == len(expected)
     for each, values in zip(axes, expected, strict=True):
         assert points(each) == {point for point in values if None not in point}
@@ -183,6 +187,17 @@ def test_few_points_are_marks_and_many_a_line(monkeypatch: pytest.MonkeyPatch) -
         (axes,) = panels(drawn("normal", BALL | load, monkeypatch))
         line = axes.lines[0]
         assert (line.get_linestyle() == "None", line.get_marker() == "o") == (count < 30,) * 2
+
+
+def test_measured_points_are_marks_beside_the_fitted_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    (query,) = (example["value"] for example in list(EXAMPLES["fit"].values())[:1])
+    assert len(query["normal_force"]) >= 30
+    force, residual = panels(figure := drawn("fit", query, monkeypatch))
+    measured, fitted = force.lines[:2]
+    assert (measured.get_linestyle(), measured.get_marker()) == ("None", ".")
+    assert (fitted.get_linestyle(), fitted.get_marker()) == ("-", "None")
+    assert residual.lines[0].get_marker() == "."
+    assert names(figure) == ["measured", "fitted"]
 
 
 def test_points_are_joined_in_the_order_of_the_abscissa(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -101,8 +101,8 @@ def draw(
 def _draw_curves(axes: _Axes, panel: Panel) -> None:
     """Draw curves, with gaps at infinite values."""
     bound, places = 0.0, set[float]()
-    for index, (x, y, name, is_reference) in enumerate(panel.curves):
-        style = "o" if x.size < LINE else "--" if is_reference else "-"
+    for index, (x, y, name, is_reference, is_measured) in enumerate(panel.curves):
+        style = "." if is_measured else "o" if x.size < LINE else "--" if is_reference else "-"
         finite = np.isfinite(y)
         if finite.any():
             places |= set(x[~finite].tolist())

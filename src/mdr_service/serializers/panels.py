@@ -50,12 +50,13 @@ class Units(NamedTuple):
 
 
 class DrawnCurve(NamedTuple):
-    """Points (x, y), and the name of their load; one that is a reference is dashed."""
+    """Points (x, y), and the name of their load; a reference is dashed."""
 
     x: Array
     y: Array
     name: str = ""
     is_reference: bool = False
+    is_measured: bool = False
 
 
 class Panel(NamedTuple):
@@ -131,6 +132,8 @@ def _over_loads(result: Mapping[str, Any], units: Units | None) -> tuple[str, li
         (x, ys, load) for x, ys, load in _OVER_LOADS if {x, *ys} <= result.keys()
     )
     at, control = np.asarray(result[x], dtype=float), ""
+    if "residual" in result:
+        return "", _fitted(at, *(np.asarray(result[y]) for y in ordinates))
     # The samples of a history follow each other as on its path.
     parts, values = [np.arange(at.size) if "step" in result else np.argsort(at)], np.zeros(1)
     if load and "step" not in result:
@@ -151,6 +154,17 @@ def _over_loads(result: Mapping[str, Any], units: Units | None) -> tuple[str, li
             ],
         )
         for y in ordinates
+    ]
+
+
+def _fitted(at: Array, force: Array, residual: Array) -> list[Panel | Map]:
+    """Return the panels of a measured curve with the fitted one, and of its residuals."""
+    order = np.argsort(at)
+    x, fit, left = at[order], force[order], residual[order]
+    measured = DrawnCurve(x, fit + left, "measured", is_measured=True)
+    return [
+        Panel("indentation_depth", "normal_force", [measured, DrawnCurve(x, fit, "fitted")]),
+        Panel("indentation_depth", "residual", [DrawnCurve(x, left, is_measured=True)]),
     ]
 
 
