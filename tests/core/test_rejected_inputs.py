@@ -1,4 +1,7 @@
-"""Rejected inputs: path, index and reason of each error."""
+"""Input that only Python can give would be taken, or its error would name another place.
+
+The wrong queries of `tests/service/test_wrong_input.py` reach the same checks over HTTP.
+"""
 
 from collections.abc import Callable
 from typing import Any
@@ -42,22 +45,10 @@ def beneath(radius: float) -> Callable[[], Any]:
 
 
 REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
-    (normal_contact(Cone(1.0)), ("load",), "exactly one of"),
-    (
-        normal_contact(Cone(1.0), indentation_depth=1.0, normal_force=1.0),
-        ("load",),
-        "exactly one of",
-    ),
     (
         normal_contact(Cone(1.0), indentation_depth=1.0, normal_force=1.0, contact_radius=1.0),
         ("load",),
         "exactly one of",
-    ),
-    (normal_contact(Cone(1.0), normal_force=[]), ("load", "normal_force"), "at least one load"),
-    (
-        normal_contact(Cone(1.0), normal_force=[1.0, -1.0]),
-        ("load", "normal_force", 1),
-        "not be negative",
     ),
     (normal_contact(Cone(1.0), normal_force=[1.0, np.inf]), ("load", "normal_force", 1), "finite"),
     (
@@ -68,14 +59,7 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
     (lambda: normal.solve(Cone(1.0), 0.0, normal_force=1.0), ("material", "e_star"), "positive"),
     (lambda: Material(1.0, 0.0), ("material", "g_star"), "positive"),
     (lambda: history.unloaded(Cone(1.0), 1.0, 0.0, 0.3), ("material", "g_star"), "positive"),
-    (tangential_contact(), ("tangential",), "exactly one of"),
-    (tangential_contact(tangential_force=0.0, stick_radius=0.1), ("tangential",), "exactly one of"),
     (tangential_contact(tangential_force=np.nan), ("tangential", "tangential_force"), "finite"),
-    (
-        tangential_contact(tangential_force=[0.0, 1.0]),
-        ("tangential", "tangential_force", 1),
-        "no equilibrium",
-    ),
     (
         tangential_contact(tangential_force=[0.0, -1.0]),
         ("tangential", "tangential_force", 1),
@@ -86,56 +70,15 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
         ("tangential", "tangential_displacement"),
         "does not agree",
     ),
-    (
-        tangential_contact(stick_radius=[0.05, 0.21]),
-        ("tangential", "stick_radius", 1),
-        "must lie between",
-    ),
-    (
-        tangential_contact(stick_radius=[-0.05, 0.1]),
-        ("tangential", "stick_radius", 0),
-        "must lie between",
-    ),
-    (
-        lambda: tangential.solve(HERTZ, 1.0, 0.0, stick_radius=0.1),
-        ("friction_coefficient",),
-        "positive",
-    ),
-    (
-        lambda: tangential.solve(HERTZ, -1.0, 0.5, stick_radius=0.1),
-        ("material", "g_star"),
-        "positive",
-    ),
-    (lambda: from_bodies([]), ("material", "bodies"), "exactly two bodies"),
-    (lambda: from_bodies([STEEL]), ("material", "bodies"), "exactly two bodies"),
     (lambda: from_bodies([STEEL, RIGID, STEEL]), ("material", "bodies"), "exactly two bodies"),
-    (lambda: from_bodies([STEEL, "steel"]), ("material", "bodies", 1), 'must be a Body or "rigid"'),
     (lambda: from_bodies([None, STEEL]), ("material", "bodies", 0), 'must be a Body or "rigid"'),
-    (lambda: from_bodies([RIGID, RIGID]), ("material", "bodies"), "at least one body"),
-    (
-        lambda: Body(0.0, 0.3),
-        ("youngs_modulus",),
-        "positive",
-    ),
-    (
-        lambda: Body(1.0, 0.51),
-        ("poissons_ratio",),
-        "at most 0.5",
-    ),
-    (
-        lambda: Body(1.0, -1.0),
-        ("poissons_ratio",),
-        "at most 0.5",
-    ),
+    (lambda: Body(0.0, 0.3), ("youngs_modulus",), "positive"),
+    (lambda: Body(1.0, -1.0), ("poissons_ratio",), "at most 0.5"),
     (normal_contact(Cone(1.0), normal_force=1.0, rtol=np.nan), ("rtol",), "must lie from"),
-    (normal_contact(Cone(1.0), normal_force=1.0, rtol=9e-14), ("rtol",), "must lie from"),
     (lambda: fields.pressure(HERTZ, [0.1], rtol=2e-3), ("rtol",), "must lie from"),
     (lambda: fields.normal_displacement(HERTZ, [0.1], rtol=-1.0), ("rtol",), "must lie from"),
-    (lambda: fields.shear_stress(PUSHED, [0.1], rtol=-1.0), ("rtol",), "must lie from"),
     (lambda: fields.slip(PUSHED, [0.1], rtol=-1.0), ("rtol",), "must lie from"),
     (lambda: fields.pressure(SWEPT, [0.1]), ("profile", "radius"), "single number"),
-    (lambda: fields.normal_displacement(SWEPT, [0.1]), ("profile", "radius"), "single number"),
-    (lambda: fields.foundation_load(SWEPT, [0.1]), ("profile", "radius"), "single number"),
     (
         lambda: fields.shear_stress(tangential.solve(SWEPT, 1.0, 0.5, tangential_force=0.0), [0.1]),
         ("profile", "radius"),
@@ -151,24 +94,11 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
         ("profile", "radius"),
         "single number",
     ),
-    (
-        lambda: subsurface.stress(HERTZ, 0.0, 0.0, 1.0, poissons_ratio=0.9),
-        ("poissons_ratio",),
-        "at most 0.5",
-    ),
     (lambda: subsurface.largest(HERTZ, poissons_ratio=-1.0), ("poissons_ratio",), "at most 0.5"),
     (lambda: subsurface.largest(HERTZ, poissons_ratio=0.3, body=3), ("body",), "1 or 2"),
     (beneath(1e-96), ("profile",), "range of double precision"),
     (beneath(1e96), ("profile",), "range of double precision"),
-    (lambda: fields.pressure(HERTZ, []), ("radius",), "at least one radius"),
-    (lambda: fields.pressure(HERTZ, [0.1, 0.2, -0.1]), ("radius", 2), "not be negative"),
-    (lambda: fields.pressure(HERTZ, [0.1, np.nan]), ("radius", 1), "finite"),
     (lambda: fields.grid(HERTZ, 3), ("points",), "at least 4"),
-    (
-        normal_contact(FlatPunch(1.0), contact_radius=1.0),
-        ("load", "contact_radius"),
-        "prescribe indentation_depth",
-    ),
     (
         tangential_contact(normal.solve(FlatPunch(1.0), 1.0, normal_force=1.0), stick_radius=0.5),
         ("tangential", "stick_radius"),
@@ -180,11 +110,7 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
         ("profile", "terms", 1, "exponent"),
         "positive",
     ),
-    (
-        lambda: Series((PowerTerm(0.0, 2.0),)),
-        ("profile", "terms", 0, "coefficient"),
-        "not zero",
-    ),
+    (lambda: Series((PowerTerm(0.0, 2.0),)), ("profile", "terms", 0, "coefficient"), "not zero"),
     (lambda: Series((PowerTerm(-1.0, 1.0), PowerTerm(1.0, 2.0))), ("profile", "terms"), "f falls"),
     # It falls at radii below exp(-1e6) only, which no double holds.
     (

@@ -15,7 +15,7 @@ from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.service.test_formats import BALL, CASES
-from tests.service.test_wrong_input import NORMAL_QUERIES, OTHER_QUERIES
+from tests.service.test_wrong_input import WRONG, changed
 
 NAMES = {
     "/v1/normal": "normal",
@@ -27,12 +27,10 @@ NAMES = {
 }
 LOADS = [1.0 + load for load in range(100)]
 HISTORY = next(query for _, name, query in CASES if name == "mindlin_deresiewicz")
-# An integer of hundreds of digits gets another message: within a batch it is a Python int.
-WRONG = [
-    ("/v1/normal", body)
-    for body, _ in NORMAL_QUERIES.values()
-    if body.startswith(b"{") and b"7" * 99 not in body
-] + [(f"/v1/{path}", body) for path, body, _ in OTHER_QUERIES.values()]
+WRONG_QUERIES = [
+    (f"/v1/{path}", changed(path, case.get("change", {}), tuple(case.get("without", ()))))
+    for path, case in WRONG.values()
+]
 
 
 def batch(client: Client, queries: Sequence[tuple[str, bytes]]) -> httpx.Response:
@@ -61,7 +59,7 @@ def test_batch_entries_equal_single_responses_in_order(client: Client) -> None:
     BatchAnswer.model_validate_json(response.content)
 
 
-@pytest.mark.parametrize(("path", "body"), WRONG)
+@pytest.mark.parametrize(("path", "body"), WRONG_QUERIES)
 def test_invalid_query_of_a_batch_has_its_own_problem(
     client: Client, path: str, body: bytes
 ) -> None:

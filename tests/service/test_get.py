@@ -1,4 +1,4 @@
-"""GET responses are identical to those of the equivalent POST requests."""
+"""GET would answer otherwise than the equivalent POST, or its errors point elsewhere."""
 
 import json
 import pickle
@@ -18,6 +18,7 @@ from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.contract import strict_json
+from tests.service.test_wrong_input import pointers
 
 DOCUMENT = json.loads((Path(__file__).parents[2] / "openapi.json").read_text("utf-8"))
 BALL = {"kind": "paraboloid", "radius": 0.01}
@@ -234,151 +235,32 @@ def test_one_number_as_text_is_the_number_alone(client: Client, name: str) -> No
     assert re.fullmatch(r"[0-9.e-]+", text.text)
 
 
-REJECTED = {
-    "nothing": ("normal", {}, "kind"),
-    "an unknown name": ("normal", {**NORMAL, "colour": "red"}, "colour"),
-    "a name of another query": ("normal", {**NORMAL, "tangential_force": 1}, "tangential_force"),
-    "no number": ("normal", {**NORMAL, "rtol": "exact"}, "rtol"),
-    "no text": ("normal", {**NORMAL, "rtol": ""}, "rtol"),
-    "a decimal comma": ("normal", {**NORMAL, "radius": "0,01"}, "radius"),
-    "an underscore": ("normal", {**NORMAL, "radius": "1_0"}, "radius"),
-    "a space": ("normal", {**NORMAL, "radius": "1 2"}, "radius"),
-    "other digits": ("normal", {**NORMAL, "radius": "٣"}, "radius"),
-    "not a number": ("normal", {**NORMAL, "radius": "nan"}, "radius"),
-    "infinity": ("normal", {**NORMAL, "radius": "inf"}, "radius"),
-    "an overflow": ("normal", {**NORMAL, "radius": "1e999"}, "radius"),
-    "a list": ("normal", {**NORMAL, "normal_force": "1,2"}, "normal_force"),
-    "a number that is out of bounds": ("normal", {**NORMAL, "radius": -1}, "radius"),
-    "a kind that is none": ("normal", {**NORMAL, "kind": "cube"}, "kind"),
-    "a kind of lists": ("normal", {**NORMAL, "kind": "tabulated"}, "kind"),
-    "a field of another kind": ("normal", {**NORMAL, "slope": 1}, "slope"),
-    "no modulus": ("normal", {**BALL, "normal_force": 1}, "e_star"),
-    "half a body": (
-        "normal",
-        {**BALL, "youngs_modulus_1": 1, "normal_force": 1},
-        "poissons_ratio_1",
-    ),
-    "moduli and bodies": ("normal", {**NORMAL, **BODIES}, "e_star"),
-    "no load": ("normal", {**BALL, "e_star": 1}, "indentation_depth"),
-    "two loads": ("normal", {**NORMAL, "contact_radius": 1}, "normal_force"),
-    "a range without an end": (
-        "normal",
-        {**BALL, "e_star": 1, "normal_force_from": 1, "n": 2},
-        "normal_force_to",
-    ),
-    "a range without a count": (
-        "normal",
-        {**BALL, "e_star": 1, "normal_force_from": 1, "normal_force_to": 2},
-        "n",
-    ),
-    "a range of one": ("normal", {**BALL, "e_star": 1, **RANGE, "n": 1}, "n"),
-    "a range of too many": (
-        "normal",
-        {**BALL, "e_star": 1, **RANGE, "n": SETTINGS.max_length + 1},
-        "n",
-    ),
-    "a count that is not whole": ("normal", {**BALL, "e_star": 1, **RANGE, "n": 2.5}, "n"),
-    "a huge count": ("normal", {**BALL, "e_star": 1, **RANGE, "n": "9" * 5000}, "n"),
-    "an end that is no number": (
-        "normal",
-        {**BALL, "e_star": 1, **RANGE, "normal_force_to": "x"},
-        "normal_force_to",
-    ),
-    "a first end out of bounds": (
-        "normal",
-        {**BALL, "e_star": 1, **RANGE, "normal_force_from": -1},
-        "normal_force_from",
-    ),
-    "a last end out of bounds": (
-        "normal",
-        {**BALL, "e_star": 1, **RANGE, "normal_force_to": -1},
-        "normal_force_to",
-    ),
-    "ends too far apart": (
-        "normal",
-        {**BALL, "e_star": 1, **RANGE, "normal_force_from": 1.7e308, "normal_force_to": -1.7e308},
-        "normal_force_from",
-    ),
-    "a last end past the profile": (
-        "normal",
-        {"kind": "sphere", "radius": 1, "e_star": 1}
-        | {"contact_radius_from": 0.5, "contact_radius_to": 2, "n": 3},
-        "contact_radius_to",
-    ),
-    "a number and a range": (
-        "normal",
-        {**BALL, "e_star": 1, **RANGE, "normal_force": 1},
-        "normal_force",
-    ),
-    "two ranges": (
-        "stress",
-        {**BALL, "e_star": 1, **RANGE, "r_from": 0, "r_to": 1, "quantities": "pressure"},
-        "r_from",
-    ),
-    "a count without a range": ("normal", {**NORMAL, "n": 5}, "n"),
-    "a scale without a range": ("normal", {**NORMAL, "scale": "log"}, "scale"),
-    "a scale that is none": ("normal", {**BALL, "e_star": 1, **RANGE, "scale": "dB"}, "scale"),
-    "equal ratios from nothing": (
-        "normal",
-        {**BALL, "e_star": 1, **RANGE, "normal_force_from": 0, "scale": "log"},
-        "normal_force_from",
-    ),
-    "no friction": (
-        "tangential",
-        {**NORMAL, "g_star": 1, "tangential_force": 1},
-        "friction_coefficient",
-    ),
-    "no shear modulus": ("tangential", {**NORMAL, **FRICTION, "tangential_force": 1}, "g_star"),
-    "no equilibrium": (
-        "tangential",
-        {**NORMAL, **FRICTION, "g_star": 1, "tangential_force": 4},
-        "tangential_force",
-    ),
-    "no radius": ("stress", {**NORMAL, "quantities": "pressure"}, "r"),
-    "radius and points": (
-        "stress",
-        {**NORMAL, "quantities": "pressure", "r": 1, "points": 5},
-        "points",
-    ),
-    "points that are not whole": (
-        "stress",
-        {**NORMAL, "quantities": "pressure", "points": "5.0"},
-        "points",
-    ),
-    "a member that is none": ("normal", {**NORMAL, "answers": "colour"}, "answers"),
-    "cycles without an amplitude": (
-        "history",
-        {**NORMAL, **FRICTION, "g_star": 1},
-        "tangential_displacement",
-    ),
-    "no quantity": ("stress", {**NORMAL, "r": 1}, "quantities"),
-    "a quantity that is none": ("stress", {**NORMAL, "r": 1, "quantities": "heat"}, "quantities"),
-    "a quantity twice": (
-        "stress",
-        {**NORMAL, "r": 1, "quantities": "pressure,pressure"},
-        "quantities",
-    ),
-    "no amplitude": (
-        "wear",
-        {**NORMAL, **FRICTION, "g_star": 1},
-        "tangential_displacement",
-    ),
-    "a held radius": (
-        "wear",
-        {**BALL, **MODULI, **FRICTION, "contact_radius": 1, "tangential_force": 1},
-        "contact_radius",
-    ),
-}
+# By query: parameters, and wrong changes of them, each with the parameter at fault and, for the
+# mistakes of newcomers, what a reader has to be told to continue.
+STORED = json.loads(
+    (Path(__file__).parents[1] / "data" / "wrong_parameters.json").read_text("utf-8")
+)
+REJECTED = [(query, name) for query, cases in STORED.items() for name in cases["wrong"]]
 
 
-@pytest.mark.parametrize("name", REJECTED)
-def test_invalid_value_points_at_its_parameter(client: Client, name: str) -> None:
-    query, parameters, pointer = REJECTED[name]
-    response = client.get(at(query, parameters))
+@pytest.mark.parametrize(("query", "name"), REJECTED)
+def test_invalid_value_points_at_its_parameter(client: Client, query: str, name: str) -> None:
+    case = STORED[query]["wrong"][name]
+    given = STORED[query]["parameters"] | case.get("change", {})
+    given = {each: given[each] for each in given if each not in case.get("without", ())}
+    response = client.get(at(query, given))
     assert response.status_code == 422
-    assert response.headers["content-type"] == "application/problem+json"
-    assert len(response.content) <= 4096
-    assert f"/{pointer}" in [error["pointer"] for error in response.json()["errors"]]
+    assert f"/{case['pointer']}" in pointers(response)
+    if "said" in case:
+        detail = response.json()["detail"]
+        assert detail.startswith(f"{case['pointer']}: ")
+        assert all(part in detail for part in case["said"]), detail
+
+
+@pytest.mark.parametrize("count", [SETTINGS.max_length + 1, "9" * 5000], ids=["many", "huge"])
+def test_range_of_too_many_is_rejected(client: Client, count: object) -> None:
+    response = client.get(at("normal", {**BALL, "e_star": 1, **RANGE, "n": count}))
+    assert "/n" in pointers(response)
 
 
 def test_unknown_format_is_not_acceptable(client: Client) -> None:
