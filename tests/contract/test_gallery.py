@@ -1,5 +1,6 @@
 """Each figure of the gallery is the response to its request, and its Python computes the same."""
 
+import json
 import re
 import shutil
 from pathlib import Path
@@ -75,7 +76,8 @@ def test_python_computes_the_response(
         lines = [np.array(line.get_ydata(), dtype=float) for line in plt.gca().get_lines()]
         plt.close("all")
     assert (tmp_path / f"{name}.svg").exists()
-    rows = list(rows_of(response))
+    # Measured points are those of the request.
+    rows = [*rows_of(response), *rows_of(json.loads(REQUESTS[name]))]
     assert lines
     for line in lines:
         assert any(
