@@ -70,10 +70,10 @@ def _name_lines(ax: Axes) -> None:
             for ha, va, shift in _SIDES:
                 text.set(ha=ha, va=va, position=shift)
                 text.xy = tuple(point)
-                box = text.get_window_extent(renderer)
-                cost = 999 * sum(box.overlaps(other) for other in boxes) + box.count_contains(
-                    covered
-                )
+                # A browser's font may be wider.
+                box = text.get_window_extent(renderer).expanded(_WIDER, 1.0).padded(_MARGIN)
+                cost = 999 * sum(box.overlaps(other) for other in boxes) + np.hypot(*shift)
+                cost += box.count_contains(covered)
                 inside = ax.bbox.count_contains(box.corners()) == len(box.corners())
                 found.append((not inside, cost, len(found), tuple(point), ha, va, shift, box))
         *_, text.xy, ha, va, shift, box = min(found)
@@ -81,16 +81,22 @@ def _name_lines(ax: Axes) -> None:
         boxes.append(box)
 
 
-#: Alignment of a name to its point, and its distance [pt].
-_SIDES = (
-    ("left", "center", (5.0, 0.0)),
-    ("right", "center", (-5.0, 0.0)),
-    ("center", "bottom", (0.0, 5.0)),
-    ("center", "top", (0.0, -5.0)),
-    ("left", "bottom", (4.0, 4.0)),
-    ("left", "top", (4.0, -4.0)),
-    ("right", "bottom", (-4.0, 4.0)),
-    ("right", "top", (-4.0, -4.0)),
+#: Width of a name in a browser, at most, and room around it [pixel].
+_WIDER, _MARGIN = 1.2, 4
+#: Alignment of a name to its point, and its distances [pt].
+_SIDES = tuple(
+    (ha, va, (x * distance, y * distance))
+    for distance in (5.0, 12.0)
+    for ha, va, x, y in (
+        ("left", "center", 1.0, 0.0),
+        ("right", "center", -1.0, 0.0),
+        ("center", "bottom", 0.0, 1.0),
+        ("center", "top", 0.0, -1.0),
+        ("left", "bottom", 0.8, 0.8),
+        ("left", "top", 0.8, -0.8),
+        ("right", "bottom", -0.8, 0.8),
+        ("right", "top", -0.8, -0.8),
+    )
 )
 
 
@@ -116,6 +122,9 @@ def save(figure: Figure, name: str, foot: str, named: Iterable[Axes] = ()) -> No
 
 def _power_of_ten(value: float, _position: object) -> str:
     """A power of ten in one size of type: exponents of Matplotlib have 7 pixels."""
+    if value == 0:
+        # Ticks beyond an axis may underflow.
+        return ""
     return "10" + str(round(np.log10(value))).translate(_RAISED)
 
 

@@ -131,10 +131,10 @@ def over_table(high: int) -> Runs:
 
 def lines() -> Iterator[tuple[str, str, Runs]]:
     yield "radii", "p(r), paraboloid", over_radii(Paraboloid(1.0), MILLION)
-    yield "radii", "p(r), rounded punch", over_radii(PUNCH, MILLION)
-    yield "radii", f"p(r), table of {TABLE} points", over_radii(sampled(TABLE), 100_000)
+    yield "radii", "p(r), punch", over_radii(PUNCH, MILLION)
+    yield "radii", "p(r), table", over_radii(sampled(TABLE), 100_000)
     yield "loads", "c, paraboloid", over_loads(Paraboloid(1.0), MILLION)
-    yield "loads", "c, rounded punch", over_loads(PUNCH, 100_000)
+    yield "loads", "c, punch", over_loads(PUNCH, 100_000)
     yield "breakpoints", "turning points", over_breakpoints(100_000)
     yield "cycles", "cycles", over_cycles(100_000)
     yield "table points", "new table, p(r)", over_table(100_000)
