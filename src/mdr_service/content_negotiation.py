@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 from typing import Final, Literal
 
-from pydantic import BaseModel, Field, SkipValidation
+from pydantic import BaseModel, ConfigDict, Field, SkipValidation
 
 from mdr_service import problems
 from mdr_service.serializers import FORMATS, PICTURES
@@ -21,6 +21,8 @@ UNITS: Final = (
 
 class Form(BaseModel):
     """Parameters of a URL that tell the form of the response."""
+
+    model_config = ConfigDict(extra="forbid")
 
     # An unknown format is not acceptable (406) rather than invalid.
     format: SkipValidation[Format | None] = Field(

@@ -6,12 +6,11 @@ import re
 from asyncio import CancelledError
 from collections.abc import Mapping
 from time import perf_counter
-from typing import Any, Final
+from typing import Final
 
 import orjson
 from anyio import move_on_after
 from fastapi import FastAPI, Request
-from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.middleware.cors import CORSMiddleware
 from starlette.requests import ClientDisconnect
@@ -23,7 +22,6 @@ from mdr_core import __version__
 from mdr_service import observability, problems
 from mdr_service.observability import RequestRecord
 from mdr_service.problems import ServiceError
-from mdr_service.query_parameters import PARAMETERS
 from mdr_service.serializers import JSON
 from mdr_service.settings import SETTINGS
 
@@ -50,7 +48,6 @@ def install(app: FastAPI) -> None:
     """Add the middleware and the exception handlers to `app`."""
     for failure in problems.FAILURES:
         app.exception_handler(failure)(_failure)
-    app.exception_handler(RequestValidationError)(_invalid_parameters)
     app.exception_handler(HTTPException)(_http_exception)
     app.add_middleware(ServiceMiddleware, transfers=app.state.transfers)
     if SETTINGS.cors_origins:
@@ -233,13 +230,6 @@ async def _too_large(request: Request) -> ServiceError:
 # rest of a rejected request.
 async def _failure(_request: Request, error: Exception) -> Response:
     return problem_response(problems.to_problem(error))
-
-
-async def _invalid_parameters(request: Request, error: RequestValidationError) -> Response:
-    # The framework puts the part of the request, `query`, first.
-    found: Any = [{**each, "loc": each["loc"][1:]} for each in error.errors()]
-    name = str(request.scope["route"].operation_id).removeprefix("get_")
-    return problem_response(problems.from_errors(found, PARAMETERS.get(name)))
 
 
 async def _http_exception(request: Request, error: HTTPException) -> Response:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from pydantic import BaseModel, ValidationError
-from pydantic_core import ErrorDetails
 
 from mdr_core.errors import AccuracyError, InputError
 from mdr_service import sentences
@@ -107,17 +106,10 @@ def document(error: ServiceError) -> dict[str, Any]:
     return found
 
 
-def from_validation(error: ValidationError) -> ServiceError:
-    """Return the failure of a request model, without the values sent."""
-    model = sentences.request_model(error.title)
-    return from_errors(error.errors(include_url=False, include_input=False), model)
-
-
-def from_errors(found: Sequence[ErrorDetails], model: type[BaseModel] | None) -> ServiceError:
-    """Return the failure with errors of pydantic, whose locations start in the request.
-
-    The members of the model are named in place of unknown ones.
-    """
+def from_validation(error: ValidationError, model: type[BaseModel] | None = None) -> ServiceError:
+    """Return the failure of a model, by default that of a request, without the values sent."""
+    model = model or sentences.request_model(error.title)
+    found = error.errors(include_url=False, include_input=False)
     if found[0]["type"] == "json_invalid":
         detail = sentences.of_json(found[0]["msg"])
         return ServiceError(MALFORMED_JSON, detail, [("", detail)])

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Final, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, ConfigDict, Field, create_model
+from pydantic import BeforeValidator, Field, create_model
 from pydantic_core import PydanticCustomError
 
 from mdr_core.errors import InputError
@@ -69,7 +69,6 @@ _CYCLES: Final = frozenset({"cycles", "cycles.normal", "cycles.tangential"})
 class Parameters(Form):
     """Parameters of a URL that stand for a request."""
 
-    model_config = ConfigDict(extra="forbid")
     model: ClassVar[type[contacts.Query]]
     """Model of the request."""
     fields: ClassVar[Mapping[str, str]]

@@ -3,12 +3,11 @@
 from collections.abc import Callable
 from typing import Annotated, Any, Final
 
-from fastapi import APIRouter, Body, Depends, Query, Request
+from fastapi import APIRouter, Body, Query
 from fastapi.types import DecoratedCallable
-from starlette.responses import Response
 
 from mdr_service.api.documentation import GET_FAILURES, POST_FAILURES, RESULT
-from mdr_service.api.query_route import QueryRoute, answer, form_of, url_parameters
+from mdr_service.api.query_route import QueryRoute
 from mdr_service.content_negotiation import Form
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas.batch import BatchAnswer, BatchQuery
@@ -21,9 +20,6 @@ from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
-
-# A response depends on the query and on the version of the service alone.
-_CACHED: Final = {"Cache-Control": "max-age=3600", "Vary": "Accept"}
 
 router = APIRouter(route_class=QueryRoute, responses=POST_FAILURES)
 _Form = Annotated[Form, Query()]
@@ -44,7 +40,7 @@ def _post(name: str, tag: str, summary: str) -> Callable[[DecoratedCallable], De
     return router.post(operation_id=name, **_described(name, tag, summary))
 
 
-# Declarations: `QueryRoute` reads their signatures, and handles the requests.
+# Declarations for OpenAPI: `QueryRoute` handles the requests.
 
 
 @_post("normal", "contact", "Normal contact under a depth, a force or a contact radius")
@@ -187,7 +183,7 @@ async def batch(query: Annotated[BatchQuery, _examples("batch")], form: _Form) -
     """
 
 
-_get_router: Final = APIRouter(responses=GET_FAILURES, dependencies=[Depends(url_parameters)])
+_get_router: Final = APIRouter(route_class=QueryRoute, responses=GET_FAILURES)
 
 
 def _declare_get(name: str, tag: str, title: str, model: Any) -> None:
@@ -195,17 +191,11 @@ def _declare_get(name: str, tag: str, title: str, model: Any) -> None:
     texts = tag, f"{title} by parameters, for spreadsheets and browsers"
 
     @_get_router.get(operation_id=f"get_{name}", **_described(name, *texts))
-    async def get(parameters: Annotated[model, Query()], request: Request) -> Response:
+    async def get(parameters: Annotated[model, Query()]) -> None:
         """Return the response of `POST` for numbers and at most one range.
 
         A range `..._from`, `..._to` and `n` stands for a list of `n` numbers.
         """
-        form = form_of(request, name, parameters.format, parameters.size, parameters.units)
-        with parameters.pointing():
-            query = await url_parameters(request) if parameters.n else parameters.query()
-            response = await answer(request, name, query, form, parameters.members)
-        response.headers.update(_CACHED)
-        return response
 
 
 for _name, _tag, _title in (
