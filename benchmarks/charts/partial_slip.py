@@ -87,7 +87,7 @@ def main() -> None:
     for name, color in zip(codes, (BLUE, MDR_COLOR), strict=True):
         time, _largest, rms = np.array([row[2:] for row in rows if row[0] == name]).T
         ax.loglog(time, rms, "o-", color=color, label=name)
-    label = r"rms error of $\tau/(\mu p_0)$ for r < 0.9 a"
+    label = "rms error of τ/(µp₀) for r < 0.9 a"
     ax.set(xlabel="CPU time [s]", ylabel=label, ylim=(1e-17, 1))
     save(figure, "partial_slip", footer("aspher"), [ax])
 

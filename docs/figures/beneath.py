@@ -145,7 +145,7 @@ def main() -> None:
     """Write every figure as SVG."""
     with mpl.rc_context(STYLE):
         for name, draw in (("ball", ball), ("punch", punch), ("fretting", fretting)):
-            figure = Figure(figsize=(8.4, 3.2))
+            figure = Figure(figsize=(7.3, 3.0))
             draw(*figure.subplots(1, 2))
             path = FOLDER / f"yield_{name}.svg"
             figure.savefig(path, metadata={"Date": None, "Creator": None})

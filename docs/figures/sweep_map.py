@@ -57,14 +57,14 @@ def swept() -> dict[str, Map]:
 def draw(columns: dict[str, Map]) -> Figure:
     """Draw two maps with contour lines."""
     force, amplitude = columns["load.normal_force"], columns["tangential.tangential_displacement"]
-    figure = Figure(figsize=(9.0, 3.8), layout="constrained")
+    figure = Figure(figsize=(7.3, 3.4), layout="constrained")
     left, right = figure.subplots(1, 2, sharey=True)
     sticks = columns["stick_radius"] / columns["contact_radius"]
     # The loss per cycle is four times that of first loading to its amplitude.
     dissipated = 4 * columns["dissipated_energy"]
-    _map(left, amplitude, force, sticks, levels=[0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.99])
+    _map(left, amplitude, force, sticks, levels=[0.8, 0.9, 0.95])
     _map(
-        right, amplitude, force, dissipated, levels=10.0 ** np.arange(-16, -2, 2), logarithmic=True
+        right, amplitude, force, dissipated, levels=10.0 ** np.arange(-12, -4, 2), logarithmic=True
     )
     left.set(title="stick radius over contact radius, $c/a$", ylabel="normal force $F_N$ in N")
     right.set(title="dissipated energy per cycle, in J")
@@ -81,9 +81,11 @@ def _map(
     part = (slice(None, None, STEP), slice(None, None, STEP))
     shown = np.maximum(values[part], 1e-17) if logarithmic else values[part]
     norm = LogNorm() if logarithmic else None
+    # The left map is mostly bright, the right one mostly dark.
+    color = "white" if logarithmic else "black"
     mesh = axes.pcolormesh(x[part], y[part], shown, norm=norm, cmap="cividis", rasterized=True)
-    lines = axes.contour(x[part], y[part], shown, levels=levels, colors="white", linewidths=0.6)
-    axes.clabel(lines, fontsize=7, fmt="%g" if not logarithmic else "%.0e")
+    lines = axes.contour(x[part], y[part], shown, levels=levels, colors=color, linewidths=0.6)
+    axes.clabel(lines, fontsize=8, fmt="%g" if not logarithmic else "%.0e")
     axes.set(xscale="log", yscale="log")
     axes.figure.colorbar(mesh, ax=axes)
 

@@ -26,7 +26,6 @@ _FLAT: Final = 0.2
 _INCH: Final = 25.4
 _STYLE: Final[dict[Any, Any]] = {
     "axes.formatter.limits": (-2, 4),
-    "axes.formatter.use_mathtext": True,
     "axes.formatter.useoffset": False,
     "axes.grid": True,
     "axes.spines.right": False,
