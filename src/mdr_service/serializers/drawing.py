@@ -26,6 +26,7 @@ _FLAT: Final = 0.2
 _INCH: Final = 25.4
 _STYLE: Final[dict[Any, Any]] = {
     "axes.formatter.limits": (-2, 4),
+    "axes.formatter.use_mathtext": True,
     "axes.formatter.useoffset": False,
     "axes.grid": True,
     "axes.spines.right": False,
@@ -76,7 +77,7 @@ def draw(
         found = label(quantity, units)
         return found.replace(" ", "\n") if is_small else found
 
-    with mpl.rc_context(_STYLE | {"font.size": 6.5 if is_small else 9.0}):
+    with mpl.rc_context(_STYLE | {"font.size": 6.5 if is_small else 9.7}):
         figure = Figure((width / _INCH, height / _INCH), layout="constrained")
         axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
         named: dict[str, Any] = {}
