@@ -211,10 +211,13 @@ def _columns(
         # A unit stays with its name where blanks separate columns.
         joined = re.sub(r"\s*/\s*|\s+in\s+", "/", re.sub(r"\s+(?=[\[(])", "", text))
         titles = _cells(joined, separator)
-        for i, title in enumerate(titles if len(titles) == count else ()):
+        # Data of the measurement, such as `Length; 0,8 mm`, name no column.
+        if len(titles) != count or any(re.match(r"[-+]?\d", title) for title in titles):
+            continue
+        for i, title in enumerate(titles):
             names[i] += f" {title}"
             unit, problem = _unit_of(title, number, of_area=_is_area(names[i]))
-            units[i] = units[i] or unit
+            units[i] = unit or units[i]
             unknown[i] = unknown[i] or problem
     places = [
         next((i for p in patterns for i in range(count) if re.search(p, names[i])), None)

@@ -115,11 +115,12 @@ function columnsOf({ heading, separator, rows }) {
     // A unit stays with its name where blanks separate columns.
     const joined = text.replace(/\s+(?=[[(])/g, "").replace(/\s*\/\s*|\s+in\s+/g, "/");
     const cells = cellsOf(joined, separator);
-    if (cells.length !== columns.length) continue;
+    // Data of the measurement, such as `Length; 0,8 mm`, name no column.
+    if (cells.length !== columns.length || cells.some((cell) => /^[-+]?\d/.test(cell))) continue;
     columns.forEach((column, i) => {
       column.name += ` ${cells[i]}`;
       const { unit, unknown } = unitOfCell(cells[i], number, isArea(column));
-      column.unit ??= unit;
+      column.unit = unit ?? column.unit;
       column.unknown ??= unknown;
     });
   }
