@@ -15,7 +15,6 @@ from mpmath import mp, mpf
 from numpy.polynomial.legendre import leggauss
 
 from mdr_core import history, normal
-from mdr_core.errors import InputError
 from tests.core.comparison import profile_from
 from tests.core.test_history_paths import DEPTH, FULL_SLIP, MATERIAL, PROFILES
 
@@ -281,20 +280,6 @@ def test_error_of_a_loose_tolerance_within_estimate(name: str, control: str) -> 
             assert miss <= bound * np.max(np.abs(values)), (column, rtol)
 
 
-@controls
-@pytest.mark.parametrize("name", ["paraboloid", "rounded-cone", "series"])
-def test_reversed_direction_is_the_mirror_image(name: str, control: str) -> None:
-    path = random_path(name, control, 12, 6)
-    pushed = next(key for key in path if key.startswith("tangential"))
-    right, left = solve(name, **path), solve(name, **(path | {pushed: -path[pushed]}))
-    for column in ("tangential_force", "tangential_displacement"):
-        values = getattr(right, column)
-        size = np.max(np.abs(values))
-        assert -getattr(left, column) == pytest.approx(values, rel=0, abs=1e-13 * size)
-    assert left.dissipation == pytest.approx(right.dissipation, rel=1e-10, abs=0)
-    assert left.regime.tolist() == right.regime.tolist()
-
-
 def count_evaluations(monkeypatch: pytest.MonkeyPatch, kind: type[Profile]) -> list[int]:
     """Number of coordinates in each evaluation of a profile's depth."""
     counts: list[int] = []
@@ -324,13 +309,3 @@ def test_cost_of_tolerance_and_load_steps(
     assert taken[1][1] <= 8 * taken[0][1]
     assert taken[2][0] <= 10 * taken[1][0]
     assert taken[2][1] <= 20 * taken[1][1]
-
-
-def test_force_beyond_friction_between_two_points_is_rejected() -> None:
-    """Both points are within the friction limit, but the path between them is not."""
-    name, depths = "paraboloid", np.array([0.1, 1.0]) * DEPTH
-    force = normal.solve(profile_from(PROFILES[name]), E_STAR, indentation_depth=depths)
-    limit = 0.999 * MU * np.asarray(force.normal_force)
-    with pytest.raises(InputError) as caught:
-        solve(name, indentation_depth=depths, tangential_force=[0.0, limit[1]])
-    assert caught.value.path == ("history", "tangential", "tangential_force", 1)

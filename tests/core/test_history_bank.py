@@ -212,33 +212,3 @@ def test_random_path(case: dict[str, Any]) -> None:
     limit = case["friction_coefficient"] * result.normal_force
     sliding = touching & (np.abs(expected) >= limit * (1 - 1e-13))
     assert np.array_equal(result.regime == "full_slip", sliding)
-
-
-@each(bank.load("history_paths")[::2])
-def test_mirrored_path_gives_mirrored_results(case: dict[str, Any]) -> None:
-    d, u = np.array(case["indentation_depth"]), np.array(case["tangential_displacement"])
-    right, left = (
-        history.solve(*material(case), indentation_depth=d, tangential_displacement=sign * u)
-        for sign in (1, -1)
-    )
-    assert np.array_equal(left.tangential_force, -right.tangential_force)
-    for name in ("normal_force", "dissipated_energy", "tangential_energy", "slip_fronts"):
-        assert np.array_equal(getattr(left, name), getattr(right, name)), name
-    assert np.array_equal(left.regime, right.regime)
-
-
-@each(bank.load("history_paths")[1::2])
-def test_single_steps_equal_the_whole_path(case: dict[str, Any]) -> None:
-    d, u = case["indentation_depth"], case["tangential_displacement"]
-    state = history.unloaded(*material(case))
-    for point in zip(d, u, strict=True):
-        state = history.advance(state, *point)
-    whole = history.solve(
-        *material(case), indentation_depth=d, tangential_displacement=u, samples_per_step=7
-    ).state
-    size = case["friction_coefficient"] * case["e_star"] * max(d)
-    assert state.indentation_depth == whole.indentation_depth
-    assert state.tangential_displacement == whole.tangential_displacement
-    assert state.depth.shape == whole.depth.shape
-    assert state.depth == pytest.approx(whole.depth, rel=1e-13, abs=1e-13 * max(d))
-    assert state.load == pytest.approx(whole.load, rel=1e-12, abs=1e-13 * size)

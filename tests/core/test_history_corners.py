@@ -9,7 +9,6 @@ import pytest
 from mpmath import mp, mpf
 
 from mdr_core import history, normal
-from mdr_core.errors import InputError
 from mdr_core.profiles import FlatPunch, Paraboloid, Profile, RoundedPunch, Tabulated
 from tests.core.comparison import EPS, INPUT, profile_from
 from tests.core.test_history_paths import DEPTH, FULL_SLIP, MATERIAL, PROFILES, solve
@@ -161,19 +160,6 @@ def test_oblique_loading_sticks(name: str, sign: int, share: float) -> None:
 
 @every_shape
 @both_directions
-def test_oblique_loading_at_the_friction_limit(name: str, sign: int) -> None:
-    """At tan(alpha) = mu every spring is at the friction limit, and none slips."""
-    force = FORCES[name]
-    result = solve(name, normal_force=[force], tangential_force=[sign * MU * force])
-    assert result.tangential_displacement[0] == near(
-        sign * MU * SHIFT * result.indentation_depth[0]
-    )
-    assert result.tangential_force[0] == near(sign * MU * force)
-    assert float(result.dissipated_energy[0]) == near(0.0, 1e-14 * MU * force * DEPTH)
-
-
-@every_shape
-@both_directions
 @pytest.mark.parametrize("part", [1 / 3, 1 / 4, 0.7])
 def test_friction_limit_after_a_preload(name: str, sign: int, part: float) -> None:
     """New springs are at the friction limit from the start; slip of rounding-error size is zero."""
@@ -236,54 +222,6 @@ def test_oblique_loading_after_a_preload(name: str, sign: int) -> None:
     assert result.tangential_displacement[1] == near(
         high.displacement(steep), rel=high.allowed(steep)
     )
-
-
-@every_shape
-@both_directions
-@pytest.mark.parametrize("rho", [1e-3, 0.97])
-def test_unloading_and_reloading(name: str, sign: int, rho: float) -> None:
-    """Masing's rule: each branch is the curve of first loading, doubled, from the reversal."""
-    force = FORCES[name]
-    top = rho * MU * force
-    points = [0.0, top, 0.3 * top, 0.0, -top, -0.2 * top, top]
-    result = solve(name, normal_force=force, tangential_force=[sign * f for f in points])
-    curve = FirstLoading(name, "normal_force", force)
-    u = sign * result.tangential_displacement
-    high = curve.displacement(top)
-    size = high * curve.allowed(top) * 3
-    assert u[1] == near(high, size)
-    for index in (2, 3, 4):
-        expected = high - 2 * curve.displacement((top - points[index]) / 2)
-        assert u[index] == near(expected, size)
-    assert u[4] == near(-high, size)
-    assert u[5] == near(-high + 2 * curve.displacement(0.4 * top), size)
-    assert u[6] == near(high, size)
-    if name != "flat-punch":
-        # Residual displacement at zero force.
-        assert u[3] > 0
-
-
-@every_shape
-@both_directions
-@pytest.mark.parametrize("rho", [1e-3, 0.97])
-def test_unloading_and_reloading_by_displacement(name: str, sign: int, rho: float) -> None:
-    curve = FirstLoading(name, "indentation_depth", DEPTH)
-    top = rho * curve.most
-    points = [0.0, top, 0.3 * top, 0.0, -top, -0.2 * top, top]
-    result = solve(
-        name, indentation_depth=DEPTH, tangential_displacement=[sign * u for u in points]
-    )
-    force = sign * result.tangential_force
-    high = curve.load(top)
-    expected = [
-        0.0,
-        high,
-        *(high - 2 * curve.load((top - u) / 2) for u in points[2:4]),
-        -high,
-        -high + 2 * curve.load(0.4 * top),
-        high,
-    ]
-    assert force == near(expected, (BOUND + SMALL / rho) * high)
 
 
 @shapes
@@ -401,64 +339,6 @@ def test_long_sliding_distance_keeps_the_force(name: str, sign: int) -> None:
     assert result.tangential_force[2] == near(sign * MU * result.normal_force[2])
     assert result.indentation_depth.tolist() == [DEPTH, DEPTH, DEPTH / 2]
     assert result.state.depth[-1] == near(DEPTH / 2)
-
-
-@shapes
-def test_cycles_retain_their_loop_under_force_control(name: str) -> None:
-    force = FORCES[name]
-    result = history.cycles(
-        profile_from(PROFILES[name]),
-        E_STAR,
-        G_STAR,
-        MU,
-        normal_force=force,
-        tangential_force=0.6 * MU * force,
-        count=3,
-        samples_per_step=2,
-    )
-    assert result.tangential_force.shape == (2 * (2 + 2 * 3),)
-    assert result.energy_per_cycle == near([result.energy_per_cycle[0]] * 3)
-    total = np.sum(result.dissipation)
-    assert result.dissipated_energy[-1] == near(float(total))
-
-
-def test_force_beyond_friction_is_rejected_with_its_index() -> None:
-    options = {"normal_force": [1.0, 2.0, 0.5], "tangential_force": [0.1, 0.3, 0.5 * MU * 1.001]}
-    with pytest.raises(InputError) as caught:
-        solve("paraboloid", **options)
-    assert caught.value.path == ("history", "tangential", "tangential_force", 2)
-    # Both points are within the friction limit; the path between them is not, since F_N falls
-    # faster than the contact can follow.
-    with pytest.raises(InputError) as caught:
-        solve("paraboloid", indentation_depth=[0.2, -0.2], tangential_force=[0.0, 0.01])
-    assert caught.value.path[:3] == ("history", "tangential", "tangential_force")
-    with pytest.raises(InputError) as caught:
-        solve("paraboloid", normal_force=[1.0, -1.0], tangential_force=[0.0, 0.0])
-    assert caught.value.path[:1] == ("history",)
-    assert caught.value.path[-1] == 1
-
-
-@pytest.mark.parametrize(
-    "controls",
-    [
-        {"indentation_depth": [0.1]},
-        {"tangential_force": [0.1]},
-        {"indentation_depth": [0.1], "normal_force": [0.1], "tangential_force": [0.0]},
-        {
-            "indentation_depth": [0.1],
-            "tangential_displacement": [0.1],
-            "tangential_force": [0.0],
-        },
-        {"indentation_depth": [0.1, 0.2], "tangential_displacement": [0.1, 0.2, 0.3]},
-        {"indentation_depth": [np.nan], "tangential_displacement": [0.1]},
-        {"indentation_depth": [0.1], "tangential_displacement": [np.inf]},
-        {"indentation_depth": [], "tangential_displacement": []},
-        {"indentation_depth": [0.1], "tangential_displacement": [0.0], "samples_per_step": 0},
-    ],
-)
-def test_invalid_path_is_rejected(controls: dict[str, Any]) -> None:
-    with pytest.raises(InputError):
-        solve("paraboloid", **controls)
 
 
 @pytest.mark.parametrize(

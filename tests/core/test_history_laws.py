@@ -186,26 +186,6 @@ def test_samples_do_not_change_the_points(
         assert load == near(first.load, 1e-13 * MU * E_STAR * depth)
 
 
-@repeatable
-@given(cases(), paths)
-def test_states_are_resumable_and_immutable(case: Case, path: list[tuple[float, float]]) -> None:
-    d, u, depth = controls(case, path)
-    states = [history.unloaded(profile_from(case[0]), E_STAR, G_STAR, MU)]
-    kept = []
-    for end in zip(d.tolist(), u.tolist(), strict=True):
-        states.append(history.advance(states[-1], *end))
-        kept.append((states[-1].depth.copy(), states[-1].load.copy()))
-    whole = solve(case, d, u).state
-    assert states[-1].depth == near(whole.depth, 1e-14 * depth)
-    assert states[-1].load == near(whole.load, 1e-13 * MU * E_STAR * depth)
-    # A second continuation from an earlier state does not affect the first one.
-    for state in states:
-        history.advance(state, 0.7 * depth, 0.3 * SHIFT * depth)
-    for state, (old_depth, old_load) in zip(states[1:], kept, strict=True):
-        assert np.array_equal(state.depth, old_depth)
-        assert np.array_equal(state.load, old_load)
-
-
 def test_state_is_immutable() -> None:
     state = history.unloaded(profile_from(PROFILES["sphere"]), E_STAR, G_STAR, MU)
     assert state.indentation_depth == state.tangential_displacement == 0
