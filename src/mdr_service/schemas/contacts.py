@@ -1,6 +1,6 @@
 """Requests about contacts under a load, and the parts that all requests share."""
 
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
@@ -154,24 +154,13 @@ class Bodies(Elastic):
     @cached_property
     def effective(self) -> materials.Material:
         """Effective moduli."""
-        return _of_bodies(
-            self.body_thickness,
-            *(
-                None if isinstance(each, str) else (each.youngs_modulus, each.poissons_ratio)
+        return materials.from_bodies(
+            [
+                materials.RIGID if isinstance(each, str) else materials.Body(**vars(each))
                 for each in self.bodies
-            ),
+            ],
+            body_thickness=self.body_thickness,
         )
-
-
-# A client often sends many queries about the same bodies.
-@lru_cache(maxsize=256)
-def _of_bodies(
-    body_thickness: float | None, *constants: tuple[float, float] | None
-) -> materials.Material:
-    return materials.from_bodies(
-        [materials.Body(*each) if each else materials.RIGID for each in constants],
-        body_thickness=body_thickness,
-    )
 
 
 class Moduli(Elastic):
