@@ -66,6 +66,13 @@ def test_nearly_equal_exponents_that_fall_are_rejected() -> None:
         series((2.8, 1.0), (-2.9, 1 + 1e-15), (0.2, 3.0))
 
 
+def test_root_below_the_range_of_doubles_is_named() -> None:
+    """a = 1e-1000: the inverse ends at zero instead of not converging."""
+    with pytest.raises(InputError, match="leaves the range of double precision") as raised:
+        normal.solve(series((1.0, 0.05), (1.0, 2.0)), 1.0, indentation_depth=[1.0, 1e-50])
+    assert raised.value.path == ("load", "indentation_depth", 1)
+
+
 def test_nearly_equal_exponents_that_cancel() -> None:
     """The inverse of such a series is dominated by rounding error and once did not converge."""
     terms = ((1.0, 1.0), (-1 + 1e-9, 1 + 1e-12))

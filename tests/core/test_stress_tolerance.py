@@ -93,3 +93,10 @@ def test_shear_stress_meets_the_tolerance(name: str, fraction: float) -> None:
     stick = low + fraction * (1 - low)
     for rtol in TOLERANCES:
         assert largest_error(name, stick, rtol) <= rtol, rtol
+
+
+def test_radii_beyond_one_block_have_the_values_of_few() -> None:
+    contact = normal.solve(profile_from(PROFILES["rounded 0.33"]), 1.0, contact_radius=1.0)
+    r = np.random.default_rng(1).uniform(0.0, 1.0, 5000)
+    few = fields.pressure(contact, r[::50])
+    assert fields.pressure(contact, r)[::50] == pytest.approx(few, rel=1e-13, abs=0)
