@@ -5,7 +5,6 @@ Python, and print the bound 1e50 with all its zeros.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import islice
 from typing import Any, Final, get_args
 
 from pydantic import BaseModel
@@ -13,7 +12,7 @@ from pydantic_core import ErrorDetails
 
 from mdr_core.validation import BODIES, FINITE, POSITIVE, not_negative
 from mdr_service.schemas.batch import BatchQuery
-from mdr_service.schemas.contacts import UNION_FIELDS, UNION_ITEMS, Choice
+from mdr_service.schemas.contacts import Choice
 from mdr_service.schemas.profiles import MODELS, OF_NUMBERS
 from mdr_service.schemas.quantities import BRANCHES
 from mdr_service.schemas.queries import SCHEMAS
@@ -66,17 +65,16 @@ def request_model(name: str) -> _Model | None:
 
 def path(error: ErrorDetails) -> Path:
     """Return the path into the request: the location without the branches of unions."""
-    steps, found = (step for step in error["loc"] if step not in BRANCHES), []
-    for step in steps:
-        found.append(step)
-        if step in UNION_FIELDS:
-            next(steps, None)
-        elif step in UNION_ITEMS:
-            found += islice(steps, 1)
-            next(steps, None)
+    location = error["loc"]
+    # The name of a member that there is not is the client's own, even that of a branch.
+    known = len(location) - (error["type"] == "extra_forbidden")
+    steps = [step for at, step in enumerate(location) if at >= known or step not in BRANCHES]
+    if steps[:1] == ["profile"]:
+        # The branch of a profile is its kind.
+        del steps[1:2]
     if error["type"].startswith("union_tag"):
-        found.append("kind")
-    return tuple(found)
+        steps.append("kind")
+    return tuple(steps)
 
 
 def _field(place: Path) -> str:

@@ -10,6 +10,7 @@ import pytest
 
 from mdr_service import problems
 from mdr_service.problems import MAX_ERRORS, MEDIA_TYPE
+from mdr_service.schemas.quantities import BRANCHES
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 
@@ -197,6 +198,27 @@ def test_problem_does_not_repeat_the_input(client: Client) -> None:
     ]
     for body in bodies:
         assert b"s3cret" not in client.post_text("/v1/normal", body).content
+
+
+@pytest.mark.parametrize("name", [*sorted(BRANCHES), "cone", "0"])
+@pytest.mark.parametrize("place", ["", "/profile", "/material", "/material/bodies/1", "/load"])
+def test_unknown_member_with_a_name_of_the_parser_is_found(
+    client: Client, place: str, name: str
+) -> None:
+    """Pydantic inserts names of its own into the location of an error."""
+    steel = {"youngs_modulus": 210e9, "poissons_ratio": 0.3}
+    request: dict[str, Any] = {
+        "profile": {"kind": "cone", "slope": 0.1},
+        "material": {"bodies": ["rigid", steel]} if "bodies" in place else {"e_star": 1.0},
+        "load": {"normal_force": 1.0},
+    }
+    member: Any = request
+    for step in place.split("/")[1:]:
+        member = member[int(step) if step.isdecimal() else step]
+    member[name] = 1
+    (error,) = client.post("/v1/normal", request).json()["errors"]
+    assert error["pointer"] == f"{place}/{name}"
+    assert error["detail"].startswith("there is no such member; there are ")
 
 
 @pytest.mark.parametrize(

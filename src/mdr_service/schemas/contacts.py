@@ -105,8 +105,8 @@ class BodyMaterial(Strict):
 # As an enumeration, because a generator of clients takes no constant in a choice.
 _Rigid = Annotated[Literal["rigid"], WithJsonSchema({"type": "string", "enum": ["rigid"]})]
 BodyOrRigid = Annotated[
-    Annotated[_Rigid, Tag("word")] | Annotated[BodyMaterial, Tag("body")],
-    Discriminator(lambda value: "word" if isinstance(value, str) else "body"),
+    Annotated[_Rigid, Tag("<rigid>")] | Annotated[BodyMaterial, Tag("<body>")],
+    Discriminator(lambda value: "<rigid>" if isinstance(value, str) else "<body>"),
 ]
 
 
@@ -191,9 +191,9 @@ class Moduli(Elastic):
 
 
 Material = Annotated[
-    Annotated[Moduli, Tag("moduli")] | Annotated[Bodies, Tag("bodies")],
+    Annotated[Moduli, Tag("<moduli>")] | Annotated[Bodies, Tag("<bodies>")],
     Discriminator(
-        lambda value: "bodies" if isinstance(value, dict) and "bodies" in value else "moduli"
+        lambda value: "<bodies>" if isinstance(value, dict) and "bodies" in value else "<moduli>"
     ),
     Field(description="Elastic constants: effective moduli, or two bodies."),
 ]
@@ -252,9 +252,3 @@ class TangentialQuery(NormalQuery):
     tangential: Tangential = Field(
         description="Exactly one control: force, displacement or stick radius."
     )
-
-
-# Pydantic inserts the branch of a union after these fields, or after the index of their items,
-# into the location of an error.
-UNION_FIELDS = frozenset({"profile", "material"})
-UNION_ITEMS = frozenset({"bodies"})

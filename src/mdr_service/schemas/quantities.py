@@ -77,15 +77,15 @@ Signed = Annotated[float, Field(ge=-LARGEST, le=LARGEST, json_schema_extra=_KEYW
 # The first invalid element is reported, not all of a hundred thousand.
 _Many = Field(min_length=1, max_length=SETTINGS.max_length, fail_fast=True)
 
-# It reports errors for the branch that the value belongs to only. Pydantic inserts the branch into
-# the location of an error: the brackets tell it from a member of a request.
-BRANCHES: Final = ("<number>", "<list>")
-_BY_TYPE: Final = Discriminator(lambda value: BRANCHES[isinstance(value, list)])
+BRANCHES: Final = frozenset({"<number>", "<list>", "<rigid>", "<body>", "<moduli>", "<bodies>"})
+"""Branches of unions, which pydantic inserts into the location of an error."""
+# It reports errors for the branch that the value belongs to only.
+_BY_TYPE: Final = Discriminator(lambda value: "<list>" if isinstance(value, list) else "<number>")
 ScalarOrArray = Annotated[
-    Annotated[Size, Tag(BRANCHES[0])] | Annotated[list[Size], _Many, Tag(BRANCHES[1])],
+    Annotated[Size, Tag("<number>")] | Annotated[list[Size], _Many, Tag("<list>")],
     _BY_TYPE,
 ]
 SignedScalarOrArray = Annotated[
-    Annotated[Signed, Tag(BRANCHES[0])] | Annotated[list[Signed], _Many, Tag(BRANCHES[1])],
+    Annotated[Signed, Tag("<number>")] | Annotated[list[Signed], _Many, Tag("<list>")],
     _BY_TYPE,
 ]
