@@ -202,7 +202,11 @@ def response_metadata(
     known = (
         own[-1:].tolist() if count == 1 else np.ascontiguousarray(np.broadcast_to(own, (count,)))
     )
-    listed = [vars(notice) for notice in warnings]
+    found = [*warnings]
+    if source.error_estimate <= query.rtol < error:
+        # That of fields, which the source does not know.
+        found.append(normal_contact.not_reached(query.rtol, error))
+    listed = [vars(notice) for notice in found]
     about = {"method": method, "error_estimate": error, "model_error": known}
     return about | {"warnings": listed}
 

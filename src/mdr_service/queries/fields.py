@@ -91,8 +91,6 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     )
     warnings = notices(query, source) + singular(radius, values, infinite)
     error = max(source.error_estimate, integrated) + at_edges
-    if source.error_estimate <= query.rtol < error:
-        warnings.append(normal_contact.not_reached(query.rtol, error))
     return {"radius": radius} | values | response_metadata(query, source, method, error, warnings)
 
 

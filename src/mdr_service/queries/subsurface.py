@@ -8,7 +8,6 @@ from mdr_core import subsurface
 from mdr_core.adhesion import AdhesiveContact
 from mdr_core.errors import InputError, Notice
 from mdr_core.history import LoadHistory
-from mdr_core.normal import not_reached
 from mdr_core.typing import Array, Flags
 from mdr_service.queries.contacts import Contact, Result, checked, notices, response_metadata
 from mdr_service.queries.fields import at_end, require_few_numbers, require_loads, solve_loaded
@@ -56,8 +55,6 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     own = source.error_estimate if isinstance(source, LoadHistory) else 0.0
     error = _OF_INVARIANTS * (own + subsurface.error_estimate(loaded, *place))
     warnings = notices(query, source)
-    if error > max(query.rtol, source.error_estimate):
-        warnings.append(not_reached(query.rtol, error))
     searched: Result = {}
     if query.largest:
         peaks = {name: subsurface.largest(loaded, name, **body) for name in subsurface.MEASURES}

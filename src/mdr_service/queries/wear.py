@@ -104,8 +104,6 @@ def _result(
         warnings += singular(radius, bounded, infinite)
         if isinstance(worn, LimitingWear):
             error += worn.field_error_estimate(radius, query.quantities)
-            if worn.error_estimate <= query.rtol < error:
-                warnings.append(normal_contact.not_reached(query.rtol, error))
         values |= {"radius": radius} | surface
     for name in _UNBOUNDED & values.keys():
         flags = unbounded[:, None] if np.ndim(values[name]) > 1 else unbounded
