@@ -30,6 +30,7 @@ _PROFILE: Final = f"an object of kind, one of {_KINDS}, and its fields"
 _PLAIN: Final = "it is not JSON in plain UTF-8 (no compression, no byte order mark)"
 # By the type of the error, and by its type and field.
 _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
+    "bool_type": "must be true or false, without quotes",
     "dict_type": "must be an object",
     "finite_number": FINITE,
     "float_type": f"{NUMBER}, without quotes or a unit",
