@@ -124,7 +124,7 @@ class Curve:
             raise InputError(("material", "work_of_adhesion"), detail)
         at = np.flatnonzero(stable[1:] != stable[:-1])
         ends = _roots(height, nodes[at], nodes[at + 1])
-        first = [self.profile.first_coordinate] if stable[0] else []
+        first = [0.0] if stable[0] else []
         return np.append(first, ends[~stable[at]]), np.append(ends[stable[at]], nodes[-1])
 
     def outermost(self, name: str, load: Array) -> tuple[Array, int]:

@@ -124,10 +124,9 @@ def stick_edge(
         if not some(early):
             return late, coordinate - late
         target = where(early, ratio * total, 0.0)
-        reach = coordinate - profile.first_coordinate
         # An infinite slope gives no first approximation of the width.
         known = (target > 0) & (first < inf)
-        start = where(known, np.minimum(target / first, reach / 2), reach / 2)
+        start = where(known, np.minimum(target / first, coordinate / 2), coordinate / 2)
     # A width that underflows is zero.
     target = where(start > 0, target, 0.0)
 
@@ -141,7 +140,7 @@ def stick_edge(
         target,
         where(start > 0, start, 1.0),
         full(0.0, target),
-        where(reach > 0, reach, 2.0),
+        where(coordinate > 0, coordinate, 2.0),
         f"{profile.kind}'s slip annulus",
     )
     return where(early, coordinate - width, late), where(early, width, coordinate - late)

@@ -71,7 +71,7 @@ def largest_stress(
         begins = c <= b
         if slip and not profile.has_no_partial_slip:
             # A radius just beyond a flat may round to that of the flat.
-            begins = where(b == profile.first_radius, slip[1] <= profile.first_coordinate, begins)
+            begins = where(b == profile.first_radius, slip[1] <= 0, begins)
         infinite = infinite | (loaded & begins & (b <= a))
     unknown, result = loaded & ~infinite, where(infinite, inf, full(0.0, edge))
     if isinstance(profile, RoundedPunch) and slip is None:
@@ -159,7 +159,7 @@ def _search(profile: Profile, edge: Array, *slip: Array, rim: Array | None = Non
         return stress - rim[load] * (1 / height - 1)
 
     best = np.zeros(edge.size)
-    fixed = np.append(profile.first_coordinate, profile.coordinate_breaks)
+    fixed = np.append(0.0, profile.coordinate_breaks)
     count = max(_SAMPLES // max(fixed.size - 1, 1), _FEWEST)
     step = max(_BLOCK // (fixed.size * count), 1)
     for start in range(0, edge.size, step):

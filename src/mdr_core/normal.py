@@ -100,7 +100,7 @@ class NormalContact(validity.ContactResults):
     @property
     def loaded(self) -> Flags:
         """True where the load is not zero."""
-        return self.coordinate > self.profile.first_coordinate
+        return self.coordinate > 0
 
     @cached_property
     def normal_stiffness(self) -> Array:
@@ -282,7 +282,7 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
             # An energy may underflow, but not overflow.
             results = a, a * a, depth, force, np.maximum(depth * force, 1.0)
         # A prescribed radius may be that of a flat, which is in contact without a load.
-        loaded = coordinate > profile.first_coordinate if name == "contact_radius" else load > 0
+        loaded = coordinate > 0 if name == "contact_radius" else load > 0
         require_representable(("load", name), loaded, *results)
     return coordinate
 

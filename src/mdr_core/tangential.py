@@ -150,9 +150,8 @@ class TangentialContact(validity.ContactResults):
     @property
     def _slipping(self) -> tuple[Array, Array]:
         """Width of the slip annulus and stick radius in the contact coordinate."""
-        first = self.normal.profile.first_coordinate
-        width = where(self.full_slip, self._coordinate - first, self.width)
-        return width, where(self.full_slip, first, self.stick_coordinate)
+        width = where(self.full_slip, self._coordinate, self.width)
+        return width, where(self.full_slip, 0.0, self.stick_coordinate)
 
     @cached_property
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from math import hypot
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from mpmath import isinf, mp, mpf
 
 from mdr_core import fields, normal, tangential
@@ -135,7 +134,7 @@ def scene(draw: Draw) -> Scene:
     breaks = [float(b) for b in made.breaks if 0 < b < EDGE]
     sticks = [draw.uniform(0.02, 0.98), 1 - _spread(draw, -12, -1), _spread(draw, -6, -0.5)]
     stick = draw.choice([*sticks, *(_near(draw, b) for b in breaks)])
-    flat = float(made.contact_radius(np.asarray(made.first_coordinate)))
+    flat = float(made.first_radius)
     if not flat < stick < EDGE:
         return scene(draw)
     radii = [draw.uniform(0.01, 0.999), 1 - _spread(draw, -14, -2), _spread(draw, -8, -1)]

@@ -258,7 +258,7 @@ def scanned(profile: Profile) -> Array:
     top = min(np.log10(profile.domain), 12.0)
     breaks, gaps = np.ravel([profile.coordinate_breaks]), np.logspace(-14, -1, 400)
     near = np.multiply.outer(breaks, np.concatenate([1 - gaps, 1 + gaps])).ravel()
-    flat = [profile.first_coordinate] if float(profile.first_radius) > 0 else []
+    flat = [0.0] if float(profile.first_radius) > 0 else []
     at = np.concatenate([flat, np.logspace(-30, top, 30_000), breaks, near])
     return np.unique(at[at <= profile.domain])
 

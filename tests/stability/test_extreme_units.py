@@ -53,7 +53,7 @@ def force(kind: str) -> Curve:
 
     def naive(unit: float) -> float:
         shape = profile_from(scaled(kind, unit))
-        first = float(shape.contact_radius(np.array(shape.first_coordinate)))
+        first = float(shape.first_radius)
         last = min(20 * unit, 0.999999 * float(shape.domain))
         a = brentq(lambda a: float(shape.g(np.array(a))) - DEPTH * unit, first, last)
         coordinate = shape.coordinate_from_radius(np.array(a))

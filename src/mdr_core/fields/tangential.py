@@ -15,7 +15,6 @@ from numpy.typing import ArrayLike
 
 from mdr_core import equivalent_1d
 from mdr_core.abel.annulus import Annulus
-from mdr_core.elementwise import number
 from mdr_core.fields.arc import Arc
 from mdr_core.fields.normal import by_load, fill, stress
 from mdr_core.history import ContactState
@@ -250,7 +249,7 @@ def _at_end(state: ContactState) -> Traction:
         return Traction(*known, ends, ends, nothing, nothing, nothing)
     if profile.has_no_partial_slip:
         depth = state.load[:1] / modulus
-        ends = np.append(profile.first_coordinate, state.coordinate[-1])
+        ends = np.append(0.0, state.coordinate[-1])
         rows = profile.contact_radius(ends), np.abs(depth), np.sign(depth), 0 * depth
         return Traction(*known, ends, *rows)
     radius = profile.contact_radius(segments.coordinate)
@@ -273,7 +272,6 @@ def _at_end(state: ContactState) -> Traction:
 def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
     """Traction under the load of an index."""
     normal, profile = contact.normal, contact.normal.profile
-    first = profile.first_coordinate
     modulus = contact.friction_coefficient * normal.e_star
     columns = by_load(
         profile,
@@ -284,13 +282,13 @@ def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
         *(contact.sign, contact.full_slip, contact.sign * contact.excess),
         contact.tangential_displacement / contact.displacement_ratio,
     )
-    flat = float(profile.contact_radius(number(first)))
+    flat = float(profile.first_radius)
     exact = normal.control == "contact_radius"
 
     def traction(load: int) -> Traction:
         e_star, mu_e, ratio, *places, sign, slides, excess, moved = (part[load] for part in columns)
         top, a, edge, c, width = places
-        ends, radii, widths, slopes, above = [first, top], [flat, a], [top - first], [0.0], [0.0]
+        ends, radii, widths, slopes, above = [0.0, top], [flat, a], [top], [0.0], [0.0]
         if profile.has_no_partial_slip:
             # The kernel of a flat punch, which has no slip annulus, reads the depth from the width.
             widths = [top if slides else width]
@@ -298,8 +296,8 @@ def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
         elif slides:
             slopes = [sign]
         elif width > 0:
-            ends, radii = [first, edge, top], [flat, c, a]
-            widths, slopes, above = [edge - first, width], [0.0, sign], [moved, 0.0]
+            ends, radii = [0.0, edge, top], [flat, c, a]
+            widths, slopes, above = [edge, width], [0.0, sign], [moved, 0.0]
         parts = np.array(ends), np.array(radii), np.array(widths), np.array(slopes), np.array(above)
         return Traction(profile, e_star, mu_e, ratio, *parts, exact=exact, excess=excess)
 

@@ -117,7 +117,7 @@ class ContactState(Results):
         """Edges of all vertices, at least that on the axis."""
         known = self.known_edges
         if not known:
-            known.append(Edge(*map(number, (self.profile.first_coordinate, 0.0, 0.0))))
+            known.append(Edge(*(number(0.0),) * 3))
         vertices, start = self.polyline.vertices[:, NORMAL:STEP].tolist(), len(known)
         for lower, upper in pairwise(vertices[start - 1 :]):
             known.append(self._edge(known[-1], number(upper[0] - lower[0]), *map(number, upper)))

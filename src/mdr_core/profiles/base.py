@@ -53,7 +53,7 @@ class Profile(ABC):
 
     The contact edge is described by the *contact coordinate* of the kind, a number in which
     radius, depth and force are all accurate: the radius a, or sqrt(a^2 - b^2) beyond a flat of
-    radius b, next to which a does not resolve them. At zero load it is `first_coordinate`.
+    radius b, next to which a does not resolve them. It is zero at zero load.
 
     A kind defines f, f', g, g', F_N/E* and its closed forms. Every other method has a general
     implementation here. Parameters may be arrays over the cases of a sweep; they broadcast with the
@@ -205,14 +205,9 @@ class Profile(ABC):
     # The contact coordinate.
 
     @property
-    def first_coordinate(self) -> float:
-        """Contact coordinate at zero load."""
-        return 0.0
-
-    @property
     def first_radius(self) -> Parameter:
         """Contact radius at zero load: that of a flat, else 0 [length]."""
-        return self.contact_radius(number(self.first_coordinate))
+        return self.contact_radius(number(0.0))
 
     @cached_property
     def largest_loads(self) -> tuple[Parameter, Parameter] | None:
@@ -330,7 +325,7 @@ class Profile(ABC):
             # Where a load hardly rises there, its power leads out of the range of doubles.
             start = scale * np.exp(np.clip(ratio, -_MAX_LOG, _MAX_LOG))
             start = where(start > 0, start, scale)
-        low, high = (full(end, start) for end in (self.first_coordinate, self.domain))
+        low, high = (full(end, start) for end in (0.0, self.domain))
 
         def sloped(s: Array) -> tuple[Array, Array]:
             value = load(s)

@@ -78,7 +78,7 @@ class Foundation:
         # Least radius at which q_x has a slope, infinite if it has none.
         self.slips_from = load.radius[:-1][self._anchors.any(axis=0)].min(initial=inf)
         self.sheared = bool(self.slips_from < inf)
-        self.loaded = bool(load.coordinate[-1] > profile.first_coordinate)
+        self.loaded = bool(load.coordinate[-1] > 0)
         if self.loaded and not 1 / _LARGEST < load.radius[-1] < _LARGEST:
             raise InputError(
                 ("profile",), "the contact radius leaves the range of double precision"

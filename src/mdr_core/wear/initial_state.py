@@ -171,7 +171,7 @@ class InitialState:
     def _singular(self) -> Array:
         """Radii at which g_0 is not smooth: the flat's, the breaks and the end [length]."""
         profile = self.normal.profile
-        inner = np.append(profile.first_coordinate, profile.coordinate_breaks)
+        inner = np.append(0.0, profile.coordinate_breaks)
         return np.append(profile.contact_radius(inner), profile.domain)
 
     def rise(self, stick_shift: float, offset: Array) -> Array:

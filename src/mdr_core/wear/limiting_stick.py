@@ -126,14 +126,13 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
 
     def carried(width: Array) -> tuple[Array, Array]:
         """Return c (d - g(c)), and its logarithmic slope, `width` below the contact's edge."""
-        edge = np.maximum(top - width, profile.first_coordinate)
+        edge = np.maximum(top - width, 0.0)
         c, step = profile.contact_radius(edge), equivalent_1d.depth_step(profile, top, width, edge)
         with np.errstate(divide="ignore", invalid="ignore"):
             slope = c * profile.depth_slope(edge) - profile.radius_slope(edge) * step
             return c * step, width * slope / (c * step)
 
-    widest = top - profile.first_coordinate
-    low, high = _first_crossing(lambda width: carried(width)[0], widest, target)
+    low, high = _first_crossing(lambda width: carried(width)[0], top, target)
     separated = ~(carried(high)[0] >= target) | contact.full_slip
     target = where(separated, 0.0, target)
     width = invert(
@@ -216,12 +215,12 @@ def _from(
     normal = contact.normal
     # In full slip c = 0, and all of the depth is worn.
     depth = where(unbounded, inf, normal.indentation_depth)
-    lost = normal.profile.first_coordinate, 0.0, normal.contact_radius, depth
+    lost = 0.0, 0.0, normal.contact_radius, depth
     found = zip(lost, (*(moved or unworn), step), strict=True)
     slides = separated | unbounded
     coordinate, radius, slip_width, step = (where(slides, *pair) for pair in found)
     # Without a normal load nothing wears.
-    loaded = normal.coordinate > normal.profile.first_coordinate
+    loaded = normal.coordinate > 0
     # A flat punch either sticks or is in full slip.
     rests = (slip_width <= 0) | ~loaded
     if width_error is None:
