@@ -120,22 +120,6 @@ def test_stresses_next_to_a_flat(*, force: float, part: float, tabulated: bool) 
                 assert value == pytest.approx(float(true / mp.pi), rel=bound, abs=0)
 
 
-def test_table_is_defined_up_to_its_last_radius() -> None:
-    r, f = np.array([0.0, 1.0, 2.0, 3.0]), np.array([0.0, 1.0, 4.0, 9.0])
-    body = Tabulated(r, f)
-    assert body.f(np.array([2.5, 3.0])) == pytest.approx([6.25, 9.0], rel=1e-12, abs=0)
-    with pytest.raises(InputError, match="ends at radius 3"):
-        body.f(np.array([2.5, np.nextafter(3.0, 4.0)]))
-
-
-@pytest.mark.parametrize("place", [0.0, 3.0])
-def test_break_outside_the_table_is_rejected(place: float) -> None:
-    r = np.array([0.0, 1.0, 2.0, 3.0])
-    with pytest.raises(InputError, match="between the axis and the last radius") as raised:
-        Tabulated(r, r**2, breaks=(1.0, place))
-    assert raised.value.path == ("profile", "breaks", 1)
-
-
 def test_rounded_radii_on_a_long_flat_weight_the_heights() -> None:
     # Most heights are equal, and their errors zero: the slope of a truncated cone remains.
     r = np.round(np.linspace(0.0, 1.0, 25) ** 2, 5)

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mdr_core import normal
+from mdr_core.profiles import Tabulated
 from tests.oracles.bodies import BODIES, AreaFunction, Body
 
 if TYPE_CHECKING:
@@ -310,3 +312,32 @@ def area_function(points: int = 590, step: float = 0.714, pixel: float = 15.3) -
     h = step * np.arange(points)
     area = 0.9 * h * h + 1100 * h
     return h, pixel * np.maximum(np.round(area / pixel), 1.0)
+
+
+@dataclass
+class Answers:
+    """Results of the library for loads on a table, with its estimates of their errors."""
+
+    depth_by_radius: Array
+    force_by_depth: Array
+    depth_by_force: Array
+    estimates: dict[str, Array]
+    codes: frozenset[str]
+
+
+def answers(table: InstrumentTable, radius: Array, depth: Array, force: Array) -> Answers:
+    """Solve the loads on a table by the library."""
+    options = {} if table.uncertainty is None else {"uncertainty": table.uncertainty}
+    profile = Tabulated(table.r, table.f, breaks=table.breaks, **options)
+    solved = {
+        "depth_by_radius": normal.solve(profile, 1.0, contact_radius=radius),
+        "force_by_depth": normal.solve(profile, 1.0, indentation_depth=depth),
+        "depth_by_force": normal.solve(profile, 1.0, normal_force=force),
+    }
+    return Answers(
+        solved["depth_by_radius"].indentation_depth,
+        solved["force_by_depth"].normal_force,
+        solved["depth_by_force"].indentation_depth,
+        {name: np.asarray(contact.data_error) for name, contact in solved.items()},
+        frozenset(notice.code for contact in solved.values() for notice in contact.warnings),
+    )
