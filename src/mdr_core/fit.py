@@ -204,6 +204,13 @@ def _curve(indentation_depth: ArrayLike, normal_force: ArrayLike) -> tuple[Array
     )
     if np.ptp(depth) == 0:
         raise InputError(("indentation_depth",), "must hold different depths")
+    # Pull-off alone has its largest force outside contact too, but its least one is farther from
+    # most forces.
+    height = force - np.median(force)
+    at_largest = depth[int(np.argmax(force))]
+    if height.max() > -height.min() and at_largest < (depth.max() + depth.min()) / 2:
+        detail = "the largest force lies at a small depth: reverse the sign "
+        raise InputError(("indentation_depth",), detail)
     return depth, force
 
 

@@ -256,8 +256,8 @@ def _thin_body(contact: LoadedContact, material: Material) -> Finding:
     def message() -> str:
         size = _per_cent(extremes(error)[1])
         return (
-            f"the contact radius is {extremes(part)[1]:.3g} of the thickness of the body, which is "
-            f"stiffer than a half-space by {size}; use a smaller load, or finite elements"
+            f"the contact radius is {extremes(part)[1]:.3g} times the thickness of the body, which "
+            f"is stiffer than a half-space by {size}; use a smaller load, or finite elements"
         )
 
     return Finding("thin_body", part > _THIN, message, part, 0.1, "finite_elements")

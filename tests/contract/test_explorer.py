@@ -213,6 +213,12 @@ def test_curve_from_an_instrument_is_fitted(visit: Visit, tmp_path: Path) -> Non
     assert note == "80 points; units from the heading."
     assert visit.number("Effective modulus E*").startswith("0.002 GPa ±")
     assert visit.number("Contact point").startswith("3 µm ±")
+    # As a separation it is refused, until its sign is reversed.
+    visit.page.click("#curve-fields .reverse")
+    assert visit.state() == "refused"
+    assert visit.page.locator("#problem-curve").inner_text().endswith("of a separation or height")
+    visit.page.click("#curve-fields .reverse")
+    assert visit.state() == "current"
     visit.page.fill("#curve", "d [nm], F [mm]\n0, 0\n1, 2\n2, 3")
     problem = visit.page.locator("#problem-curve")
     problem.get_by_text("F in mm: its units are N, mN, µN, nN").wait_for()
@@ -349,6 +355,21 @@ def test_largest_stress_at_the_surface_is_that_of_full_slip(visit: Visit, case: 
     expected = p_0 * ((1 - 2 * 0.3) / 3 + (4 + 0.3) * math.pi * 0.3 / 8) / 1e6
     shown = visit.number("Largest σ_xx, body 2").split()[0]
     assert float(shown) == pytest.approx(expected, rel=1e-4, abs=0)
+
+
+def test_narrow_worn_annulus_fills_its_chart(visit: Visit) -> None:
+    """After these cycles, not in the limit, from which the annulus of Eq. (5.90) differs."""
+    amplitude = "&mu=0.6&oscillation=tangential_displacement&amplitude=1e-8"
+    visit.open(f"?tab=wear&load=20{amplitude}")
+    chart = visit.page.locator("figure", has_text="Worn depth").locator(".plot")
+    low, high = chart.evaluate("plot => plot.layout.xaxis.range")
+    stick, outer = (
+        float(visit.number(label).split()[0]) for label in ("Stick radius c", "Contact radius a")
+    )
+    width = outer - stick
+    assert [low, high] == pytest.approx([stick - width, outer + width], rel=0, abs=2e-2 * width)
+    names = chart.locator(".annotation-text").all_text_contents()
+    assert names == ["c", "a"]
 
 
 def test_wear_coefficient_is_a_worn_volume_per_energy(visit: Visit) -> None:

@@ -271,6 +271,27 @@ def test_errors_name_the_input(
     assert error.value.path == path
 
 
+def test_separation_in_place_of_depth_is_refused() -> None:
+    for profile in SHAPES.values():
+        for curve in (forces(profile), forces(profile) + 1.0, adhesive(mdr.Paraboloid(1.0), DEPTH)):
+            for names in (ALL[:2], ALL):
+                with pytest.raises(mdr.InputError, match="of a separation or height") as error:
+                    fit.solve(profile, indentation_depth=-DEPTH, normal_force=curve, fit=names)
+                assert error.value.path == ("indentation_depth",)
+
+
+def test_pull_off_alone_is_no_separation() -> None:
+    """Three states below zero force, and many points after the pull-off, on any offset."""
+    depth = np.append(np.linspace(-4e-2, -4e-3, 60), np.linspace(-1e-3, 2e-4, 12))
+    for offset in (-1.0, 0.0, 1.0):
+        force = adhesive(mdr.Paraboloid(1.0), depth) + offset
+        names = ("e_star", "contact_point", "force_offset", "work_of_adhesion")
+        found = fit.solve(
+            mdr.Paraboloid(1.0), indentation_depth=depth, normal_force=force, fit=names
+        )
+        assert found.force_offset == pytest.approx(offset, rel=1e-6, abs=1e-6)
+
+
 def test_too_few_points_in_contact_are_refused() -> None:
     depth = np.linspace(-1.0, 0.0, 20)
     force = np.zeros(20)

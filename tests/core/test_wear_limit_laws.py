@@ -120,6 +120,10 @@ def test_equation_5_90_and_its_warning() -> None:
     # Values of the closed form; the limit of the load path is a different one.
     assert (round(float(wear.stick_radius), 3), round(d, 3)) == (0.648, 1.169)
     assert "path_dependent" in codes(wear)
+    # Without a stick zone Eq. (5.90) is not used.
+    sliding = limit.solve(contact, 1.0, 1.0, tangential_displacement=2.0)
+    assert "endless_wear" in codes(sliding)
+    assert "path_dependent" not in codes(sliding)
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=kind_of)

@@ -311,7 +311,7 @@ class LimitingWear(validity.ContactResults):
             not self._holds_depth and self.tangential_contact.control == "tangential_displacement"
         )
         where = {
-            "path_dependent": path_dependent & wears,
+            "path_dependent": path_dependent & wears & ~self.stick_zone.unbounded,
             "singular": wears & (self.stick_radius > 0),
             "no_wear": self.regime == "stick",
             "contact_lost": self.stick_zone.separated,

@@ -56,8 +56,13 @@ function verticals(spec, inputs, colours) {
     type: "line", x0: radius / factor, x1: radius / factor, y0: 0, y1: 1, yref: "paper",
     line: { color: colours.faint, width: 1, dash: "dot" },
   }));
-  const notes = edges.filter(([name]) => name).map(([name, radius]) => ({
+  const named = edges.filter(([name]) => name);
+  const reach = Math.max(...(spec.range ?? spec.traces.flatMap(({ x }) => x)));
+  // Names of neighbours stand on the outer sides of their lines.
+  const isNear = (i, j) => named[j] && Math.abs(named[j][1] - named[i][1]) < 0.05 * reach;
+  const notes = named.map(([name, radius], i) => ({
     x: radius / factor, y: 1, yref: "paper", yanchor: "bottom", text: name, showarrow: false,
+    xanchor: isNear(i, i + 1) ? "right" : isNear(i, i - 1) ? "left" : "center",
     font: { color: colours.ink, size: 12 },
   }));
   return { lines, notes };
@@ -78,7 +83,10 @@ function layout(spec, inputs, colours) {
     legend: { orientation: "h", x: 0, y: 1.09, yanchor: "bottom" },
     hovermode: spec.map ? "closest" : "x unified",
     hoverlabel: { bgcolor: colours.paper, font: { color: colours.ink } },
-    xaxis: { ...axis(spec.x), type: spec.logarithmic ? "log" : "linear" },
+    xaxis: {
+      ...axis(spec.x), type: spec.logarithmic ? "log" : "linear",
+      range: spec.range?.map((x) => x / unit(spec.x[1], inputs).factor),
+    },
     yaxis: {
       ...axis(spec.y), type: spec.logarithmic ? "log" : "linear",
       autorange: spec.map ? "reversed" : true,

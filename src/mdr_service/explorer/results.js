@@ -377,15 +377,18 @@ export async function solveWear(inputs, query) {
   const limit = await query("Limit", "v1/wear", { ...body, radius });
   const [now, final] = [single(course, cycles.indexOf(inputs.cycles)), single(limit)];
   const depth = (profile) => profile.map((f, i) => f - limit.initial_profile[i]);
-  const edges = [["c", final.stick_radius], ["ã", final.wear_radius]];
+  const [stick, outer] = [now.stick_radius, now.contact_radius];
+  const edges = [["c", stick], ["a", outer]];
+  const width = outer - stick;
+  // A narrow annulus fills a third of the chart.
+  const range = width < 0.2 * outer ? [stick - width, outer + width] : undefined;
   return {
     responses: [limit, course],
     known: now,
     numbers: [
-      ...numbersOf(now, ["worn_volume", "contact_radius"]),
+      ...numbersOf(now, ["worn_volume", "contact_radius", "stick_radius"]),
       ["Worn volume in the limit", final.worn_volume, "volume"],
       ["Wear radius ã in the limit", final.wear_radius, "length"],
-      ...numbersOf(final, ["stick_radius"]),
       ...numbersOf(now, ["indentation_depth", "normal_force", "dissipated_energy"]),
       ["Energy per cycle, mean", now.dissipated_energy / inputs.cycles, "energy"],
     ],
@@ -398,7 +401,7 @@ export async function solveWear(inputs, query) {
       fieldChart("Evolution", "Worn depth", "worn_depth", edges, radius, [
         { name: "after these cycles", y: depth(now.profile) },
         { name: "limit", y: depth(final.limiting_profile), role: "limit" },
-      ]),
+      ], { range }),
       fieldChart("Evolution", "Pressure after these cycles", "pressure", edges, radius, [
         { name: "pressure", y: now.pressure, fill: true },
       ]),

@@ -104,7 +104,8 @@ export function tableField(root, kind, { change, fail }) {
     });
   });
   text.addEventListener("input", read);
-  part(".reverse")?.addEventListener("click", () => shown && rewrite({ ...shown, f: shown.f.map((height) => 0 - height) }));
+  part(".reverse").addEventListener("click", () =>
+    shown && rewrite({ ...shown, [kind.reversed]: shown[kind.reversed].map((x) => 0 - x) }));
   part(".centre")?.addEventListener("click", () => {
     if (!shown) return;
     const axis = axisOf(shown);

@@ -23,11 +23,11 @@ const HEIGHT = [/(?<![a-z])(f|z|h|hc|height|depth|profile)(?![a-z])/i, /(?<![a-z
 const DEPTH = [/(?<![a-z])(d|depth|indentation|displacement)(?![a-z])/i, /(?<![a-z])(h|x|z|position|separation)(?![a-z])/i];
 const FORCE = [/(?<![a-z])(f|fn|force|load)(?![a-z])/i, /(?<![a-z])(p|y)(?![a-z])/i];
 export const PROFILE = {
-  heads: ["r", "f"], names: [RADIUS, HEIGHT], units: [LENGTHS, LENGTHS],
+  heads: ["r", "f"], names: [RADIUS, HEIGHT], units: [LENGTHS, LENGTHS], reversed: "f",
   expected: "a radius and a height", ask: "the radius r and the height f",
 };
 export const CURVE = {
-  heads: ["d", "F"], names: [DEPTH, FORCE], units: [LENGTHS, FORCES],
+  heads: ["d", "F"], names: [DEPTH, FORCE], units: [LENGTHS, FORCES], reversed: "r",
   expected: "a depth and a force", ask: "the depth d and the force F",
 };
 
