@@ -54,12 +54,6 @@ def test_errors_name_the_option(given: list[str], option: str, capsys: Capture) 
     assert capsys.readouterr().err.startswith(f"mdr normal: {option}: ")
 
 
-def test_a_file_and_options_exclude_each_other(capsys: Capture) -> None:
-    assert main(["normal", "request.json", *OPTIONS, "--normal-force", "1"]) == 2
-    sentence = "give the request by a file or by options, not both"
-    assert capsys.readouterr().err == f"mdr normal: {sentence}\n"
-
-
 def test_a_response_that_cannot_be_written_is_named(tmp_path: Path, capsys: Capture) -> None:
     target = str(tmp_path / "missing" / "a.json")
     assert main(["normal", *OPTIONS, "--normal-force", "1", "-o", target]) == 4

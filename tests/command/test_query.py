@@ -138,13 +138,6 @@ def test_each_type_of_problem_has_its_exit_status(
     assert f"mdr normal: {in_process.file}: {sentence}" in err.decode()
 
 
-def test_missing_file_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["normal", "/nowhere/request.json"]) == 2
-    assert (
-        capsys.readouterr().err == "mdr normal: /nowhere/request.json: No such file or directory\n"
-    )
-
-
 @pytest.mark.parametrize("name", ["/dev/zero", "-"])
 def test_endless_request_is_rejected(
     name: str, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

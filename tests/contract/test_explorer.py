@@ -517,12 +517,3 @@ def test_unreadable_member_of_a_link_is_named(visit: Visit, member: str, link: s
     visit.open(link)
     assert visit.page.locator("#unread").inner_text().endswith(f"cannot read: {member}.")
     assert visit.page.locator("#charts a").count() == 0
-
-
-@pytest.mark.parametrize("kind", ["paraboloid", "sphere", "ellipsoid", "flat_punch", "balls"])
-def test_radius_zero_is_reported_at_its_field(visit: Visit, kind: str) -> None:
-    visit.open(f"?kind={kind}")
-    field = visit.page.locator("#profile-fields .field").first
-    field.locator("[type=text]").fill("0")
-    field.locator(".problem:not(:empty)").wait_for()
-    assert visit.state() == "refused"

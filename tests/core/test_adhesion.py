@@ -505,16 +505,6 @@ def test_loads_without_a_state_are_rejected(
     assert said in caught.value.detail
 
 
-def test_friction_and_wear_are_rejected_with_the_reason() -> None:
-    contact: Any = adhesion.solve(mdr.Paraboloid(1.0), 1.0, 0.02, normal_force=0.1)
-    given: dict[str, Any] = {"tangential_force": 0.01}
-    for solve in (mdr.tangential.solve, mdr.wear.limit.solve):
-        with pytest.raises(mdr.InputError, match="friction, yield or wear is not exact"):
-            solve(contact, 1.0, 0.3, **given)
-    with pytest.raises(mdr.InputError, match="is not exact"):
-        subsurface.yield_onset_force(contact, 1.0, poissons_ratio=0.3)
-
-
 @pytest.mark.parametrize("reach", [1e-3, 0.05])
 def test_short_range_is_that_of_tabor(reach: float) -> None:
     """For a paraboloid it is (R w^2/(E*^2 z^3))^(1/3), with R = E* = 1."""

@@ -64,27 +64,6 @@ def test_str_of_many_loads_is_short() -> None:
     assert max(map(len, repr(contact).splitlines())) < 100
 
 
-@pytest.mark.parametrize(
-    "profile", [BALL, mdr.Cone(0.1), mdr.RoundedPunch(1e-4, 0.01), mdr.FlatPunch(1e-4)]
-)
-def test_states_retain_the_energies_of_the_history(profile: mdr.Profile) -> None:
-    rng = np.random.default_rng(7)
-    depth, displacement = rng.uniform(-1e-7, 1e-6, 60), np.cumsum(rng.normal(0.0, 1e-7, 60))
-    given = (profile, *FRICTION[1:])
-    history = mdr.history.solve(
-        *given, indentation_depth=depth, tangential_displacement=displacement
-    )
-    state, dissipated = unloaded(*given), 0.0
-    for i, place in enumerate(zip(depth, displacement, strict=True)):
-        state = advance(state, *place)
-        dissipated += state.dissipation
-        for name in ("normal_force", "elastic_energy", "tangential_force", "tangential_energy"):
-            largest = np.abs(getattr(history, name)).max()
-            expected = pytest.approx(getattr(history, name)[i], rel=0, abs=1e-13 * largest)
-            assert getattr(state, name) == expected, name
-        assert dissipated == pytest.approx(history.dissipated_energy[i], rel=1e-12, abs=0)
-
-
 def test_step_in_full_stick_dissipates_nothing() -> None:
     state = advance(advance(unloaded(*FRICTION), 1e-6, 0.0), 2e-6, 1e-8)
     assert state.dissipation == 0

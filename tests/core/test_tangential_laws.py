@@ -305,56 +305,6 @@ def test_displacement_at_the_edge_and_in_the_far_field(case: Case) -> None:
     assert up[2] == near(afar, rel=1e-11)
 
 
-def test_force_beyond_friction_is_rejected_with_its_index() -> None:
-    contact = normal.solve(Paraboloid(1.0), E_STAR, normal_force=[1.0, 2.0, 3.0])
-    with pytest.raises(InputError) as caught:
-        solve_tangential(contact, tangential_force=[0.1, -0.75, 0.1])
-    assert caught.value.path == ("tangential", "tangential_force", 1)
-    with pytest.raises(InputError) as caught:
-        solve_tangential(contact, tangential_force=0.5)
-    assert caught.value.path[:2] == ("tangential", "tangential_force")
-    alone = normal.solve(Paraboloid(1.0), E_STAR, normal_force=1.0)
-    with pytest.raises(InputError) as caught:
-        solve_tangential(alone, tangential_force=[0.1, 0.2, MU * 1.001])
-    assert caught.value.path == ("tangential", "tangential_force", 2)
-
-
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-@pytest.mark.parametrize("name", ANSWERS[:3])
-def test_nonfinite_load_is_rejected(name: str, bad: float) -> None:
-    contact = normal.solve(Paraboloid(1.0), E_STAR, normal_force=1.0)
-    with pytest.raises(InputError) as caught:
-        solve_tangential(contact, **{name: [0.01, bad]})
-    assert caught.value.path == ("tangential", name, 1)
-
-
-@pytest.mark.parametrize("bad", [-0.1, 0.50001])
-def test_stick_radius_outside_the_contact_is_rejected(bad: float) -> None:
-    contact = normal.solve(Paraboloid(1.0), E_STAR, contact_radius=0.5)
-    with pytest.raises(InputError) as caught:
-        solve_tangential(contact, stick_radius=bad)
-    assert caught.value.path == ("tangential", "stick_radius")
-
-
-@pytest.mark.parametrize("bad", [0.0, -1.0, np.nan, np.inf])
-def test_parameters_must_be_positive(bad: float) -> None:
-    contact = normal.solve(Paraboloid(1.0), E_STAR, contact_radius=0.5)
-    with pytest.raises(InputError) as caught:
-        tangential.solve(contact, bad, MU, tangential_force=0.0)
-    assert caught.value.path == ("material", "g_star")
-    with pytest.raises(InputError) as caught:
-        tangential.solve(contact, G_STAR, bad, tangential_force=0.0)
-    assert caught.value.path == ("friction_coefficient",)
-
-
-def test_exactly_one_load_is_required() -> None:
-    contact = normal.solve(Paraboloid(1.0), E_STAR, contact_radius=0.5)
-    with pytest.raises(InputError):
-        solve_tangential(contact)
-    with pytest.raises(InputError):
-        solve_tangential(contact, tangential_force=0.0, stick_radius=0.1)
-
-
 def test_slip_does_not_enter_a_flat() -> None:
     contact = normal.solve(RoundedPunch(0.6, 2.0), E_STAR, contact_radius=0.9)
     bound = MU * float(contact.normal_force)

@@ -221,15 +221,6 @@ def test_equal_numbers_of_cycles_are_ascending() -> None:
     assert raised.value.path == ("cycles", 2)
 
 
-@pytest.mark.parametrize("resolution", [7, 97])
-def test_resolution_outside_its_bounds_is_rejected(resolution: int) -> None:
-    contact = normal.solve(Paraboloid(1.0), 1.0, indentation_depth=1.0)
-    given = {"wear_coefficient": 1e-2, "tangential_displacement": 0.75, "cycles": [1.0]}
-    with pytest.raises(InputError) as raised:
-        evolution.solve(contact, 1.0, 1.0, resolution=resolution, **given)
-    assert raised.value.path == ("resolution",)
-
-
 def test_worn_profile_is_defined_up_to_the_end_of_the_profile() -> None:
     contact = normal.solve(Sphere(2.0), 1.0, indentation_depth=0.1)
     worn = limit.solve(contact, 1.0, 1.0, tangential_displacement=1e-3)

@@ -203,63 +203,6 @@ def test_stick_zone_at_the_equator_leaves_no_room_for_wear() -> None:
     assert "profile ends" in failure.value.detail
 
 
-@pytest.mark.parametrize(
-    ("load", "amplitude", "path"),
-    [
-        ({"contact_radius": 0.3}, {"tangential_force": 0.1}, ("load", "contact_radius")),
-        ({"normal_force": 0.3}, {}, ("tangential",)),
-        (
-            {"normal_force": 0.3},
-            {"tangential_force": 0.1, "tangential_displacement": 0.1},
-            ("tangential",),
-        ),
-        (
-            {"normal_force": 0.3},
-            {"tangential_force": [0.1, -0.1]},
-            ("tangential", "tangential_force", 1),
-        ),
-        (
-            {"normal_force": 0.3},
-            {"tangential_displacement": [np.nan]},
-            ("tangential", "tangential_displacement", 0),
-        ),
-        (
-            {"normal_force": 0.3},
-            {"tangential_displacement": []},
-            ("tangential", "tangential_displacement"),
-        ),
-        (
-            {"normal_force": 0.3},
-            {"tangential_force": [0.1, 0.16]},
-            ("tangential", "tangential_force", 1),
-        ),
-    ],
-)
-def test_errors_name_their_cause(
-    load: dict[str, Any], amplitude: dict[str, Any], path: tuple[Any, ...]
-) -> None:
-    with pytest.raises(InputError) as failure:
-        worn(Paraboloid(R), load, amplitude)
-    assert failure.value.path == path
-
-
-def test_profile_arrays_and_invalid_radii_are_rejected() -> None:
-    with pytest.raises(InputError, match="profile"):
-        worn(
-            Paraboloid(np.array([1.0, 2.0])),
-            {"normal_force": 0.3},
-            {"tangential_force": 0.1},
-        )
-    wear = worn(Sphere(1.0), {"indentation_depth": 0.3}, {"tangential_displacement": 0.05})
-    for method in (wear.worn_depth, wear.limiting_profile, wear.initial_profile, wear.pressure):
-        for bad in ([0.1, -0.1], [0.1, np.nan], [0.1, np.inf]):
-            with pytest.raises(InputError) as failure:
-                method(bad)
-            assert failure.value.path == ("radius", 1)
-    with pytest.raises(InputError, match=r"the profile ends at radius 0\.99999999"):
-        wear.limiting_profile([0.5, 1.5])
-
-
 def test_grid_includes_every_edge() -> None:
     wear = worn(
         RoundedPunch(0.5, 1.7),

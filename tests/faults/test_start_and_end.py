@@ -146,18 +146,6 @@ def test_log_is_whole_lines_of_json() -> None:
     assert messages[-1].startswith("Stopping parent process")
 
 
-def test_log_that_nobody_reads_does_not_stop_the_service() -> None:
-    port = free_port()
-    with running(service(port), port, **FEW), connected(port) as client:
-        # A pipe holds some 300 lines.
-        for _ in range(600):
-            client.request("GET", "/health")
-            assert client.getresponse().read()
-        client.request("GET", "/metrics")
-        text = client.getresponse().read().decode()
-        assert float(text.split("\nmdr_log_lines_lost_total ")[1].split()[0]) > 100
-
-
 def failed(*commands: list[str], **environment: str) -> list[subprocess.CompletedProcess[str]]:
     """Run commands in parallel, since most of their time is spent on imports."""
     run = partial(subprocess.run, capture_output=True, text=True, check=False)
@@ -228,9 +216,3 @@ def test_make_run_ends_with_its_service(stop: str) -> None:
     assert f"http://127.0.0.1:{port}/docs" in output
     assert "Traceback" not in output
     assert not is_served(port)
-
-
-def test_openapi_document_is_printed_without_serving() -> None:
-    command = [sys.executable, "-m", "mdr_command", "openapi"]
-    printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    assert printed == (ROOT / "openapi.json").read_text("utf-8")

@@ -11,20 +11,14 @@ from mdr_service.problems import MEDIA_TYPE
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.batch import BatchAnswer
 from mdr_service.schemas.examples import EXAMPLES
+from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.service.test_formats import BALL, CASES
 from tests.service.test_wrong_input import WRONG, changed
 
-NAMES = {
-    "/v1/normal": "normal",
-    "/v1/tangential": "tangential",
-    "/v1/tangential/history": "history",
-    "/v1/stress": "stress",
-    "/v1/wear": "wear",
-    "/v1/wear/evolution": "evolution",
-}
+NAMES = {schema.path: name for name, schema in SCHEMAS.items()}
 LOADS = [1.0 + load for load in range(100)]
 HISTORY = next(query for _, name, query in CASES if name == "mindlin_deresiewicz")
 WRONG_QUERIES = [

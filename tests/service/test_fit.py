@@ -65,27 +65,6 @@ def test_table_and_picture(client: Client) -> None:
     assert "residual" in client.post(f"{PATH}?format=svg", query()).text
 
 
-@pytest.mark.parametrize(
-    ("changed", "pointer", "words"),
-    [
-        ({"normal_force": [1.0, 2.0, 3.0]}, "/normal_force", "3 values for 51 depths"),
-        ({"fit": ["contact_point"]}, "/material", "is needed"),
-        ({"material": {"e_star": 1.0}}, "/material", "leave it out"),
-        ({"fit": ["radius"]}, "/fit/0", "e_star"),
-        ({"fit": []}, "/fit", "at least one"),
-        ({"noise": -1.0}, "/noise", "positive"),
-    ],
-)
-def test_errors_point_at_the_input(
-    client: Client, changed: dict[str, Any], pointer: str, words: str
-) -> None:
-    response = client.post(PATH, query(**changed))
-    assert response.status_code == 422
-    (error,) = response.json()["errors"]
-    assert error["pointer"] == pointer
-    assert words in error["detail"]
-
-
 def test_work_of_adhesion_from_a_curve_of_jkr(client: Client) -> None:
     # E* = 1, R = 1: d = a² - (2πwa)^(1/2), F = 4/3 a³ - (8πwa³)^(1/2), in another coordinate.
     a, w = np.geomspace(0.1, 0.4, 40), 1e-3

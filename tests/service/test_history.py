@@ -128,13 +128,6 @@ def test_cycles_equal_the_core(client: Client, load_path: str) -> None:
         assert len(document[name]) == 3
 
 
-def test_default_number_of_cycles_is_one(client: Client) -> None:
-    told_by = {"normal": {"normal_force": 1e5}, "tangential": {"tangential_force": 3e4}}
-    document = client.post(PATH, query(cycles=told_by)).json()
-    assert document["tangential_force"] == [0.0, 3e4, -3e4, 3e4]
-    assert len(document["energy_per_cycle"]) == 1
-
-
 def test_bodies_and_yield_strength(client: Client) -> None:
     rubber = {"youngs_modulus": 5e6, "poissons_ratio": 0.4, "yield_strength": 1.0}
     material = {"bodies": ["rigid", {k: rubber[k] for k in ("youngs_modulus", "poissons_ratio")}]}
@@ -193,18 +186,6 @@ def test_fields_at_the_end_equal_the_core(client: Client, kind: str, load_path: 
         for name in names:
             result = getattr(fields, name)(source, RADII).tolist()
             assert document[name] == [[r if abs(r) < float("inf") else None for r in result]], name
-
-
-def test_single_load_as_a_history_has_identical_fields(client: Client) -> None:
-    asked = {"radius": RADII, "quantities": [*OF_NORMAL, *OF_SHEAR]}
-    load_path = history_of({"normal_force": 1e5}, {"tangential_force": [0.0, 3e4]})
-    push = {"load": {"normal_force": 1e5}, "tangential": {"tangential_force": 3e4}}
-    followed, pushed = (
-        client.post("/v1/stress", query(**each, **asked)).json() for each in (load_path, push)
-    )
-    for name in asked["quantities"]:
-        (one,), (other,) = followed[name], pushed[name]
-        assert one == pytest.approx(other, rel=1e-11, abs=1e-13 * max(map(abs, other)))
 
 
 @pytest.mark.parametrize("load_path", PATHS)

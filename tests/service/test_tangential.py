@@ -43,21 +43,6 @@ def test_response_equals_the_core(client: Client, kind: str) -> None:
     assert response["error_estimate"] == pushed.error_estimate
 
 
-@pytest.mark.parametrize("kind", PROFILES)
-def test_controls_are_equivalent(client: Client, kind: str) -> None:
-    by_force = client.post("/v1/tangential", query(kind, 1e5, tangential_force=3e4)).json()
-    for control in ("tangential_displacement", "stick_radius"):
-        if kind == "flat_punch" and control == "stick_radius":
-            # Full stick under every force but the last.
-            continue
-        (value,) = by_force[control]
-        again = client.post("/v1/tangential", query(kind, 1e5, **{control: value})).json()
-        assert again["tangential_force"] == pytest.approx(
-            by_force["tangential_force"], rel=1e-8, abs=0
-        )
-        assert again[control] == [value]
-
-
 @pytest.mark.parametrize(
     ("load", "control", "count"),
     [(1e5, 1e4, 1), ([1e5], 1e4, 1), (1e5, [1e4, 2e4], 2), ([1e5, 2e5], 1e4, 2)],
@@ -66,25 +51,6 @@ def test_scalar_loads_broadcast(client: Client, load: object, control: object, c
     response = client.post("/v1/tangential", query("cone", load, tangential_force=control)).json()
     for name in (*NAMES, *TANGENTIAL_NAMES):
         assert len(response[name]) == count
-
-
-def test_reversed_direction_changes_the_sign_only(client: Client) -> None:
-    there, back = (
-        client.post("/v1/tangential", query("cone", 1e5, tangential_force=force)).json()
-        for force in (2e4, -2e4)
-    )
-    for name in ("tangential_force", "tangential_displacement"):
-        assert back[name] == [-there[name][0]]
-    for name in ("stick_radius", "slip_width", "tangential_stiffness", "dissipated_energy"):
-        assert back[name] == there[name]
-
-
-def test_displacement_beyond_full_slip(client: Client) -> None:
-    response = client.post("/v1/tangential", query("cone", 1e5, tangential_displacement=-10.0))
-    document = response.json()
-    assert document["regime"] == ["full_slip"]
-    assert document["tangential_force"] == [-FRICTION * 1e5]
-    assert document["stick_radius"] == [0.0]
 
 
 def test_bodies_give_the_shear_modulus(client: Client) -> None:

@@ -87,21 +87,6 @@ def test_limit_equals_the_core(client: Client, kind: str, control: str) -> None:
     assert ("path_dependent" in codes(document)) == (control == "force and displacement")
 
 
-def test_force_that_no_stick_zone_carries_ends_without_contact(client: Client) -> None:
-    """At a constant depth wear reduces the normal force, until the whole contact slips."""
-    limiting = {"tangential_force": 0.999 * FRICTION * force_at(1e-3)}
-    document = client.post(LIMIT, query("paraboloid", {"indentation_depth": 1e-3}, limiting)).json()
-    assert {"contact_lost"} <= codes(document)
-    assert document["regime"] == ["full_slip"]
-    assert (document["stick_radius"], document["normal_force"]) == ([0.0], [0.0])
-
-
-def force_at(depth: float) -> float:
-    return float(
-        normal.solve(PROFILES["paraboloid"][1], E_STAR, indentation_depth=depth).normal_force
-    )
-
-
 def test_radius_next_to_the_stick_edge_is_in_the_estimate(client: Client) -> None:
     body = query("paraboloid", *CONTROLS["forces"], quantities=["pressure"])
     c = client.post(LIMIT, body | {"points": 9}).json()["stick_radius"][0]
@@ -232,16 +217,6 @@ def test_profile_outside_a_flat_punch_is_infinite(client: Client) -> None:
         assert messages == [f"{name} is infinite at radius 0.4" for name in names]
 
 
-def test_evolution_converges_to_the_limit(client: Client) -> None:
-    for control in ("forces", "depth and displacement"):
-        document = client.post(EVOLUTION, evolution_query(control=control, cycles=[1e12])).json()
-        ends = client.post(LIMIT, query("paraboloid", *CONTROLS[control])).json()
-        assert "limit_reached" in codes(document)
-        for name in ("worn_volume", "indentation_depth", "normal_force", "stick_radius"):
-            assert document[name] == pytest.approx(ends[name], rel=1e-3, abs=0), name
-        assert document["contact_radius"] == pytest.approx(ends["wear_radius"], rel=1e-3, abs=0)
-
-
 def test_many_radii_equal_few(client: Client) -> None:
     body = evolution_query(control="force and displacement", resolution=8, cycles=[1e6])
     many = client.post(EVOLUTION, body | {"points": 5_000}).json()
@@ -288,23 +263,3 @@ def test_radius_beyond_the_profile_is_rejected(client: Client) -> None:
     assert pointer == "/radius/2"
     assert "the profile ends at radius 0.49999" in detail
     assert client.post(EVOLUTION, body | {"radius": [0.0, 0.49]}).status_code == 200
-
-
-def test_radius_beyond_the_profile_is_rejected_with_its_index(client: Client) -> None:
-    query = {
-        "profile": {"kind": "sphere", "radius": 0.01},
-        "material": {"e_star": 1e11, "g_star": 8e10},
-        "friction_coefficient": 0.3,
-        "load": {"normal_force": 10.0},
-        "oscillation": {"tangential_force": 1.0},
-        "wear_coefficient": 1e-13,
-        "cycles": [1.0],
-        "resolution": 8,
-        "quantities": ["worn_depth"],
-        "radius": [1e-5, 0.0099, 0.011],
-    }
-    response = client.post("/v1/wear/evolution", query)
-    assert response.status_code == 422
-    (error,) = response.json()["errors"]
-    assert error["pointer"] == "/radius/2"
-    assert "the profile ends at radius 0.0099999" in error["detail"]

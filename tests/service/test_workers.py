@@ -3,8 +3,6 @@
 import os
 import signal
 import struct
-import subprocess
-import sys
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from contextlib import asynccontextmanager
@@ -193,28 +191,6 @@ def test_standard_output_of_the_process_is_not_mistaken_for_a_result(shared: Sha
     shared(test)
 
 
-def test_terminated_process_loses_its_own_computation_only(shared: Shared) -> None:
-    async def test(pool: WorkerPool) -> None:
-        result = await error_of(pool.run_in_process(kill_itself))
-        assert (result.type, result.retry_after) == (problems.LOST, 1)
-        assert ready_processes() == 0
-        assert await pool.run_in_process(own_process) != os.getpid()
-        assert ready_processes() == 1
-
-    shared(test)
-
-
-def test_process_stopped_while_idle_is_detected_by_the_next_query(shared: Shared) -> None:
-    async def test(pool: WorkerPool) -> None:
-        stopped = await pool.run_in_process(own_process)
-        os.kill(stopped, signal.SIGSTOP)
-        assert (await error_of(pool.run_in_process(own_process))).type == problems.LOST
-        await wait_for(lambda: not process_exists(stopped))
-        assert await pool.run_in_process(own_process) != stopped
-
-    shared(test)
-
-
 def test_query_is_rejected_when_the_queue_is_full(shared: Shared, tmp_path: Path) -> None:
     async def test(pool: WorkerPool) -> None:
         async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
@@ -260,16 +236,6 @@ def test_computation_beyond_its_time_limit_is_terminated_and_the_next_is_answere
     run(test, ONE.model_copy(update={"budget_seconds": 1.0}))
 
 
-def test_process_killed_while_idle_is_replaced_and_counted() -> None:
-    async def test(pool: WorkerPool) -> None:
-        counted, killed = lost_processes(), await pool.run_in_process(own_process)
-        os.kill(killed, signal.SIGKILL)
-        await wait_for(lambda: lost_processes() == counted + 1 and ready_processes() == 1)
-        assert await pool.run_in_process(own_process) != killed
-
-    run(test)
-
-
 @pytest.mark.parametrize("error", [RuntimeError, struct.error, EOFError, MemoryError])
 def test_any_failure_of_an_exchange_loses_that_process_only(
     monkeypatch: pytest.MonkeyPatch, error: type[Exception]
@@ -299,24 +265,6 @@ def test_pool_without_supervision_is_not_ready() -> None:
         return await error_of(pool.run_in_process(own_process))
 
     assert anyio.run(main).type == problems.LOST
-
-
-def test_process_stopped_while_computing_is_replaced_after_the_time_limit() -> None:
-    async def test(pool: WorkerPool) -> None:
-        stopped = await pool.run_in_process(own_process)
-        async with anyio.create_task_group() as tasks:
-
-            async def expect_end() -> None:
-                result = await error_of(pool.run_in_process(sleep_for, 60.0))
-                assert result.type == problems.TIME_EXCEEDED
-
-            tasks.start_soon(expect_end)
-            await anyio.sleep(0.3)
-            os.kill(stopped, signal.SIGSTOP)
-        await wait_for(lambda: not process_exists(stopped))
-        assert await pool.run_in_process(own_process) != stopped
-
-    run(test, ONE.model_copy(update={"budget_seconds": 1.0}))
 
 
 def test_process_that_fails_to_start_is_restarted(tmp_path: Path) -> None:
@@ -425,30 +373,3 @@ def test_queries_of_one_client_do_not_displace_each_other() -> None:
                 tasks.start_soon(pool.run_in_process, sleep_for, 1.0)
 
     run(test, TWO)
-
-
-def test_compute_process_at_work_ends_with_its_server(tmp_path: Path) -> None:
-    code = f"""
-import anyio, pathlib, os
-from mdr_service.settings import SETTINGS
-from mdr_service.workers import WorkerPool
-from tests.service.test_workers import own_process, sleep_for
-
-async def main():
-    pool = WorkerPool(SETTINGS.model_copy(update={{"compute_processes": 1}}))
-    async with pool.started(own_process):
-        number = await pool.run_in_process(own_process)
-        pathlib.Path({str(tmp_path / "number")!r}).write_text(str(number))
-        async with anyio.create_task_group() as tasks:
-            tasks.start_soon(pool.run_in_process, sleep_for, 9.0)
-            await anyio.sleep(0.2)
-            os.kill(os.getpid(), {signal.SIGKILL:d})
-
-anyio.run(main)
-"""
-    subprocess.run([sys.executable, "-c", code], check=False)
-    number = int((tmp_path / "number").read_text())
-    ended = time.monotonic()
-    while process_exists(number):
-        assert time.monotonic() - ended < 5.0
-        time.sleep(0.05)
