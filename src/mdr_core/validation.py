@@ -46,6 +46,11 @@ def as_numbers(path: tuple[str | int, ...], values: float | ArrayLike) -> Array:
     if isinstance(values, (float, int)):
         numbers = np.float64(values)
     else:
+        masked = np.ma.getmaskarray(values) if isinstance(values, np.ma.MaskedArray) else None
+        if masked is not None and masked.any():
+            # As an array it would hold the number beneath the mask.
+            detail = "is masked: leave it out, or give a number"
+            raise InputError((*path, *first_index(masked)), detail)
         with suppress(TypeError, ValueError):
             array = np.asarray(values)
             # NumPy would convert text as well.

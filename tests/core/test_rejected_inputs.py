@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mdr_core import fields, history, normal, subsurface, tangential, wear
+from mdr_core import fields, fit, history, normal, subsurface, tangential, wear
 from mdr_core.errors import InputError
 from mdr_core.materials import RIGID, Body, Material, from_bodies
 from mdr_core.profiles import (
@@ -21,6 +21,7 @@ from mdr_core.profiles import (
     RoundedPunch,
     Series,
     Sphere,
+    Tabulated,
     TruncatedCone,
     TruncatedParaboloid,
 )
@@ -28,6 +29,7 @@ from mdr_core.profiles import (
 STEEL = Body(2.1e11, 0.3)
 HERTZ = normal.solve(Paraboloid(1.0), 1.0, contact_radius=[0.1, 0.2])
 PUSHED = tangential.solve(HERTZ, 1.0, 0.5, stick_radius=[0.05, 0.1])
+MASKED = np.ma.masked_equal([1.0, -999.0, 3.0], -999.0)
 SWEPT = normal.solve(Paraboloid(np.array([1.0, 2.0])), 1.0, normal_force=1.0)
 
 
@@ -58,6 +60,23 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
     ),
     (lambda: normal.solve(Cone(1.0), 0.0, normal_force=1.0), ("material", "e_star"), "positive"),
     (lambda: Material(1.0, 0.0), ("material", "g_star"), "positive"),
+    # Numbers beneath a mask are no input.
+    (normal_contact(Cone(1.0), normal_force=MASKED), ("load", "normal_force", 1), "masked"),
+    (lambda: Cone(MASKED), ("profile", "slope", 1), "masked"),
+    (lambda: Tabulated([0.0, 1.0, 2.0], MASKED), ("profile", "f", 1), "masked"),
+    (lambda: Tabulated.from_area_function([0.0, 1.0, 2.0], MASKED), ("profile", "area", 1), "mask"),
+    (lambda: Tabulated.from_force_depth(MASKED, [1.0, 2.0, 3.0], 1.0), ("depth", 1), "masked"),
+    (lambda: fields.pressure(HERTZ, MASKED), ("radius", 1), "masked"),
+    (
+        lambda: subsurface.stress(HERTZ, 0.0, 0.0, MASKED, poissons_ratio=0.3),
+        ("z", 1),
+        "masked",
+    ),
+    (
+        lambda: fit.solve(Cone(1.0), indentation_depth=MASKED, normal_force=[1.0, 2.0, 3.0]),
+        ("indentation_depth", 1),
+        "masked",
+    ),
     (lambda: history.unloaded(Cone(1.0), 1.0, 0.0, 0.3), ("material", "g_star"), "positive"),
     (tangential_contact(tangential_force=np.nan), ("tangential", "tangential_force"), "finite"),
     (

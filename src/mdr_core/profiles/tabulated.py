@@ -20,6 +20,7 @@ from mdr_core.profiles.table_fit import fit_table
 from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
 from mdr_core.quadrature import composite_rule, in_order
 from mdr_core.typing import Array, Flags, Indices, Parameter
+from mdr_core.validation import as_numbers
 
 # Bound on the error of the sums over the pieces: several times the largest in the tests.
 _ROUNDING: Final = 2e-13
@@ -79,7 +80,9 @@ class Tabulated(Profile):
         breaks: Sequence[float] = (),
         uncertainty: float | None = None,
     ) -> None:
-        self.r, self.values = _checked(np.array(r, dtype=float), np.array(f, dtype=float))
+        self.r, self.values = _checked(
+            *(np.array(as_numbers(("profile", name), each)) for name, each in (("r", r), ("f", f)))
+        )
         self._end = float(np.abs(self.r).max())
         self._breaks = tuple(sorted(float(b) for b in breaks))
         for i, b in enumerate(breaks):
@@ -142,7 +145,7 @@ class Tabulated(Profile):
         ------
         InputError : a curve that is none of a profile, because a does not increase with d.
         """
-        d, reduced = (np.asarray(each, dtype=float) for each in (depth, np.divide(force, e_star)))
+        d, reduced = as_numbers(("depth",), depth), as_numbers(("force",), force) / e_star
         for name, values in (("depth", d), ("force", reduced)):
             if values.shape != d.shape or values.min() <= 0 or np.diff(values).min() <= 0:
                 raise InputError((name,), "must be positive, increase, and have a value for each d")
@@ -403,7 +406,7 @@ def tip_points(coefficients: Sequence[float], largest_height: float) -> tuple[Ar
 
 def _radii(area: ArrayLike) -> Array:
     """Radii of discs of these areas."""
-    section = np.asarray(area, dtype=float)
+    section = as_numbers(("profile", "area"), area)
     if np.any(section < 0):
         raise InputError(("profile", "area"), "must not be negative")
     return np.sqrt(section / np.pi)

@@ -12,7 +12,12 @@ from mdr_core.fields.radii import Edges, error_near, rim_error
 from mdr_core.history import ContactState
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.typing import Array, Numbers
-from mdr_core.validation import require_finite, require_not_negative, require_poissons_ratio
+from mdr_core.validation import (
+    as_numbers,
+    require_finite,
+    require_not_negative,
+    require_poissons_ratio,
+)
 
 # Part of its distance from the nearest edge or break, or of the rounding error of the contact
 # radius, by which a point is moved off the surface, where the kernels are singular.
@@ -116,7 +121,7 @@ def stress(
             return np.stack(found, axis=-1)
 
         return StressTensor(*np.moveaxis(contact.superposed(tensor), -1, 0))
-    where = [np.asarray(part, dtype=float) for part in (x, y, z)]
+    where = [as_numbers((name,), part) for name, part in zip("xyz", (x, y, z), strict=True)]
     for name, given in zip("xyz", where, strict=True):
         require_finite((name,), given)
     require_not_negative(("z",), where[2])

@@ -16,6 +16,7 @@ from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_core.validation import (
+    as_numbers,
     first_index,
     require_not_negative,
     require_single_positive,
@@ -319,7 +320,7 @@ def _largest(values: Array, others: Array | float = 0.0) -> float:
 
 
 def _checked_cycles(cycles: ArrayLike) -> Array:
-    numbers = np.asarray(cycles, dtype=float)
+    numbers = as_numbers(("cycles",), cycles)
     if numbers.ndim != 1 or numbers.size == 0:
         raise InputError(("cycles",), "a list of at least one number is needed")
     require_not_negative(("cycles",), numbers)
