@@ -179,7 +179,7 @@ def test_tangential_force_of_a_history_needs_nothing_else(controls: str) -> None
     """Whatever its length: neither slip and energies nor the normal contact of each sample."""
     for steps in (10, 100_000):
         with (
-            patch.object(step_results, "_work", never),
+            patch.object(step_results, "dissipation", never),
             patch.object(step_results, "variance_growth", never),
             patch.object(Sphere, "reduced_energy", never),
             patch.object(IntervalMoments, "over", never),
@@ -194,7 +194,7 @@ def test_a_step_computes_only_what_is_requested() -> None:
     state = history.unloaded(Sphere(1.5), 3.7, 2.9, 0.37)
     for depth, displacement in ((0.2, 0.01), (0.25, 0.03), (0.22, -0.01), (0.23, 0.02)):
         with (
-            patch.object(step_results, "_work", never),
+            patch.object(step_results, "dissipation", never),
             patch.object(step_results, "variance_growth", never),
             patch.object(Sphere, "reduced_energy", never),
         ):

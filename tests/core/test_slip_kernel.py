@@ -11,7 +11,7 @@ from shutil import which
 import numpy as np
 import pytest
 
-from mdr_core.history import slip_kernel, slip_memory
+from mdr_core.history import friction_work, slip_kernel, slip_memory
 from mdr_core.history.slip_memory import LoadPoints
 
 TEXT = Path(slip_memory.__file__).with_name("slip_kernel.py")
@@ -39,7 +39,7 @@ def test_compiled_kernel_is_bit_identical_to_python(
     )
     start = slip_memory.separated(0.0, 0.0)
     compiled = slip_memory.follow(start, points)
-    intervals = compiled[0].slip_intervals
+    swept = friction_work.swept(compiled[0])
     vertices, path = np.tile(compiled[1].vertices, (9, 1)), rng.normal(0.3, 0.2, (4, 9))
     contacts = vertices, len(compiled[1].vertices) * np.arange(1, 10), path
     each = slip_memory.moved_each(*contacts)
@@ -48,24 +48,29 @@ def test_compiled_kernel_is_bit_identical_to_python(
     assert specification.loader is not None
     plain = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(plain)
-    monkeypatch.setattr(slip_memory, "kernel", plain)
+    for module in (slip_memory, friction_work):
+        monkeypatch.setattr(module, "kernel", plain)
     tree, line = slip_memory.follow(start, points)
     for name in ("parent", "vertices", "top"):
         np.testing.assert_array_equal(getattr(compiled[0], name), getattr(tree, name), name)
     for one, other in zip(compiled[1], line, strict=True):
         np.testing.assert_array_equal(one, other)
-    np.testing.assert_array_equal(intervals, tree.slip_intervals)
+    for one, other in zip(swept, friction_work.swept(tree), strict=True):
+        np.testing.assert_array_equal(one, other)
     for one, other in zip(each, slip_memory.moved_each(*contacts), strict=True):
         np.testing.assert_array_equal(one, other)
 
 
-def test_intervals_without_room_are_counted() -> None:
+def test_parts_without_room_are_counted() -> None:
     """No path writes beyond the array, however many segments rounding errors add to the front."""
     rng = np.random.default_rng(21)
-    loads = rng.normal(0.3, 0.1, 200), np.cumsum(rng.normal(0.0, 0.2, 200))
-    points = LoadPoints(*loads, np.zeros(200, dtype=bool), np.arange(200))
+    normal, tangential = rng.normal(0.3, 0.1, 200), np.cumsum(rng.normal(0.0, 0.2, 200))
+    points = LoadPoints(normal, tangential, np.zeros(200, dtype=bool), np.arange(200))
     tree, _ = slip_memory.follow(slip_memory.separated(0.0, 0.0), points)
-    top, path = np.append(-1, tree.top), np.hstack([np.zeros((2, 1)), tree.path])
-    front = slip_kernel.SlipFront(tree.parent, tree.vertices, top, path, np.empty((7, 5)))
-    count = front.run()
-    assert count == tree.slip_intervals.shape[1] > 200
+    fallen = -np.diff(tree.path, prepend=0.0)
+    tops = np.append(-1, tree.top[:-1])
+    counts = [
+        slip_kernel.sweep(tree.parent, tree.vertices, tops, fallen, np.empty((6, room)))
+        for room in (5, 4000)
+    ]
+    assert counts[0] == counts[1] > 200

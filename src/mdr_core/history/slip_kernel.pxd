@@ -36,31 +36,12 @@ cdef class PolylineStack:
     ) noexcept
 
 
-@cython.final
-cdef class SlipFront:
-    cdef Py_ssize_t[::1] parent, tops
-    cdef const double[:, :] vertices
-    cdef double[:, ::1] path, intervals
-    cdef Py_ssize_t count, room
-    cdef double n, s, n_end, s_end, f_end, b_end
-
-    @cython.locals(i=Py_ssize_t)
-    cpdef Py_ssize_t run(self)
-    @cython.locals(at=Py_ssize_t, below=Py_ssize_t, in_backward=bint)
-    cdef void _descend(self, Py_ssize_t i) noexcept
-    cdef void _sweep(self, Py_ssize_t i, double span, double turn, double lower) noexcept
-    @cython.locals(in_backward=bint)
-    cdef void _slip(
-        self, Py_ssize_t i, double span, double turn, double upper_side, double lower_side,
-        double lower
-    ) noexcept
-    @cython.locals(new=Py_ssize_t)
-    cdef void _add(
-        self, Py_ssize_t i, double at, double span, double a, double b, double c, double s
-    ) noexcept
-    cdef double _side(self) noexcept
-    cdef bint _is_in_backward(self, double side) noexcept
-    cdef double _gap(self, bint in_backward, double side) noexcept
-
+@cython.locals(
+    at=Py_ssize_t, below=Py_ssize_t, count=Py_ssize_t, i=Py_ssize_t, room=Py_ssize_t
+)
+cpdef Py_ssize_t sweep(
+    Py_ssize_t[::1] parent, const double[:, :] vertices, Py_ssize_t[::1] tops,
+    double[:, ::1] fallen, double[:, ::1] swept
+)
 @cython.locals(below=Py_ssize_t, i=Py_ssize_t)
 cpdef accumulate(Py_ssize_t[::1] parent, double[::1] step, double[::1] total)

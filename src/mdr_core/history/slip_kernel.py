@@ -217,174 +217,50 @@ class PolylineStack:
         self.rows[at, STEP] = step
 
 
-class SlipFront:
-    """Path of the slip front down the polylines of a tree, and the work of friction above it.
+def sweep(parent: Indices, vertices: Array, tops: Indices, fallen: Array, swept: Array) -> int:
+    """List the parts of segments that the slip front sweeps on each step; return their number.
 
-    On a step from P to P' the load point moves evenly. A place of the old polyline slips as soon as
-    it exceeds the load point in one of the sums, f or b. While the front sweeps a segment of length
-    h, from its upper end down, all springs above slip by s, the decrease of that sum, under the
-    friction mu E* (n_P - n) of each. Interchanged, the integrals over front and springs give
-
-        G* D/(mu E*)^2 = int M(n) 2 dx,   M(n) = (s/h) int_(front < n) max(n_P - n, 0) dn_front.
-
-    Both paths are straight, so M is of degree 2 on each of the three intervals between their four
-    ends. Its Bernstein coefficients are not negative.
-
-    In full slip, the front on the axis, friction is mu F_N. Its mean over a path of length h is
-    I + a h at the shallow end of the path, plus such an integral over the path.
+    On a step from P to P' a place of the polyline slips as soon as it exceeds the load point in one
+    of the sums f and b. The front moves down from P to where neither sum exceeds that of P'.
 
     Parameters
     ----------
     parent, vertices : tree of all polylines, see `PolylineStack.run`.
-    tops, path : vertex and coordinates of the load point before the first step and after each,
-        shapes (n + 1,) and (2, n + 1).
-    intervals : receives the seven numbers of each interval as long as there is room: normal
-        coordinate of the lower end, length, the three coefficients, upwards, s in full slip, else
-        zero, and the step; shape (7, room).
+    tops : vertex of the load point before each step, shape (n,).
+    fallen : decrease of its normal and tangential coordinate on each step, shape (2, n).
+    swept : receives six numbers of each part as long as there is room: step, normal coordinate of
+        the lower end, and the distances in normal coordinate and anchor from P down to the upper
+        end, and from there to the lower one; shape (6, room).
     """
-
-    def __init__(
-        self, parent: Indices, vertices: Array, tops: Indices, path: Array, intervals: Array
-    ) -> None:
-        self.parent = parent
-        self.vertices = vertices
-        self.tops = tops
-        self.path = path
-        self.intervals = intervals
-        self.room = intervals.shape[1]
-        self.count = 0
-        # Distance of the front from the load point before the step: normal coordinate and anchor.
-        self.n = self.s = 0.0
-        # That of the load point after it, and its sum and difference.
-        self.n_end = self.s_end = self.f_end = self.b_end = 0.0
-
-    def run(self) -> int:
-        """Follow the front on all steps; return the number of intervals."""
-        for i in range(len(self.tops) - 1):
-            if self.path[0, i] > 0 or self.path[0, i + 1] > 0:
-                self._descend(i)
-        return self.count
-
-    def _descend(self, i: int) -> None:
-        """Follow the front on one step."""
-        x0 = self.path[0, i]
-        y0 = self.path[1, i]
-        x = self.path[0, i + 1]
-        y = self.path[1, i + 1]
-        if x0 <= 0:
-            # Contact begins, or ends, where the straight step crosses normal coordinate zero.
-            y0 = y0 + (y - y0) * (-x0 / (x - x0))
-            x0 = 0.0
-        elif x <= 0:
-            y = y0 + (y - y0) * (x0 / (x0 - x))
-            x = 0.0
-        self.n = self.s = 0.0
-        self.n_end = x0 - x
-        self.s_end = y0 - y
-        self.f_end = self.n_end + self.s_end
-        self.b_end = self.n_end - self.s_end
-        if max(self.f_end, self.b_end) <= 0:
-            return
-        at = self.tops[i]
-        below = self.parent[at] if at >= 0 else -1
+    count = 0
+    room = swept.shape[1]
+    for i in range(len(tops)):
+        f_end = fallen[0, i] + fallen[1, i]
+        b_end = fallen[0, i] - fallen[1, i]
+        n = 0.0
+        s = 0.0
+        part = 1.0
+        at = tops[i]
+        below = parent[at] if at >= 0 and max(f_end, b_end) > 0 else -1
         while below >= 0:
-            span = max(self.vertices[0, at] - self.vertices[0, below], 0.0)
-            turn = self.vertices[1, at] * span
-            part = 1.0
-            f = self.n + self.s
-            b = self.n - self.s
-            if f + (span + turn) >= self.f_end and b + (span - turn) >= self.b_end:
-                # The front ends where neither sum exceeds that of the new load point any more.
-                part = (self.f_end - f) / (span + turn) if f < self.f_end else 0.0
-                other = (self.b_end - b) / (span - turn) if b < self.b_end else 0.0
+            span = max(vertices[0, at] - vertices[0, below], 0.0)
+            turn = vertices[1, at] * span
+            f = n + s
+            b = n - s
+            if f + (span + turn) >= f_end and b + (span - turn) >= b_end:
+                part = (f_end - f) / (span + turn) if f < f_end else 0.0
+                other = (b_end - b) / (span - turn) if b < b_end else 0.0
                 part = min(max(part, other), 1.0)
-            lower = self.vertices[0, below] + (1 - part) * span
-            self._sweep(i, part * span, part * turn, lower)
-            if part < 1:
-                return
+            if count < room:
+                swept[0, count], swept[1, count] = i, vertices[0, below] + (1 - part) * span
+                swept[2, count], swept[3, count] = n, s
+                swept[4, count], swept[5, count] = part * span, part * turn
+            count += 1
+            n += part * span
+            s += part * turn
             at = below
-            below = self.parent[at]
-        # The front rests on the axis, and all springs slip until the end of the step.
-        side = self._side()
-        in_backward = self._is_in_backward(side)
-        slip = self.b_end - self.n + self.s if in_backward else self.f_end - self.n - self.s
-        if slip > 0:
-            start = self._gap(in_backward, side)
-            span = abs(x - start)
-            self._add(i, min(start, x), span, slip * span / 2, 0.0, 0.0, slip)
-
-    def _sweep(self, i: int, span: float, turn: float, lower: float) -> None:
-        """Move the front down a segment, to the normal coordinate `lower`."""
-        upper_side = self._side()
-        self.n += span
-        self.s += turn
-        lower_side = self._side()
-        if (upper_side > 0 and lower_side < 0) or (upper_side < 0 and lower_side > 0):
-            # The load point passes through the segment: friction acts in both sums in turn.
-            part = upper_side / (upper_side - lower_side)
-            rest = 1 - part
-            self._slip(i, part * span, part * turn, upper_side, 0.0, lower + rest * span)
-            self._slip(i, rest * span, rest * turn, 0.0, lower_side, lower)
-        else:
-            self._slip(i, span, turn, upper_side, lower_side, lower)
-
-    def _slip(
-        self, i: int, span: float, turn: float, upper_side: float, lower_side: float, lower: float
-    ) -> None:
-        """Add the intervals of a segment on which friction acts in one sum."""
-        in_backward = self._is_in_backward(upper_side + lower_side)
-        slip = span - turn if in_backward else span + turn
-        if slip <= 0:
-            return
-        start = self._gap(in_backward, upper_side)
-        end = self._gap(in_backward, lower_side)
-        # Above `lower` the front moves from `span` to 0, the load point from span + start to end.
-        first = min(span, end)
-        fallen = (span - end) + start
-        # M at both ends of the second interval, and its coefficient between.
-        if end <= span:
-            second = span - end
-            third = start
-            low = fallen / span * end * end / 2
-            high = start * start * span / (2 * fallen) if fallen > 0 else 0.0
-            between = end * start / 2
-        else:
-            second = min(start, end - span)
-            third = abs(fallen)
-            low = span * ((end - span) + start) / 2
-            high = span * third / 2
-            between = (low + high) / 2
-        ratio = slip / span
-        low *= ratio
-        high *= ratio
-        self._add(i, lower, first, 0.0, ratio * first * end / 2, low, 0.0)
-        self._add(i, lower + first, second, low, ratio * between, high, 0.0)
-        self._add(i, lower + first + second, third, high, 0.0, 0.0, 0.0)
-
-    def _add(self, i: int, at: float, span: float, a: float, b: float, c: float, s: float) -> None:
-        """Add an interval, unless it is empty and nothing slides there."""
-        if span > 0 or s > 0:
-            new = self.count
-            self.count = new + 1
-            if new < self.room:
-                self.intervals[0, new], self.intervals[1, new] = at, span
-                self.intervals[2, new], self.intervals[3, new], self.intervals[4, new] = a, b, c
-                self.intervals[5, new], self.intervals[6, new] = s, i
-
-    def _side(self) -> float:
-        """Twice the cross product of the front's distance and the load point's.
-
-        It is positive where b is exceeded first, negative where f is.
-        """
-        return 2 * (self.s * self.n_end - self.n * self.s_end)
-
-    def _is_in_backward(self, side: float) -> bool:
-        """True where friction acts in b: by the side, where both sums decrease."""
-        return self.f_end <= 0 or (self.b_end > 0 and side >= 0)
-
-    def _gap(self, in_backward: bool, side: float) -> float:  # noqa: FBT001 -- as C takes it
-        """Distance of the load point from the front in the normal coordinate."""
-        return max(side / self.b_end if in_backward else -side / self.f_end, 0.0) / 2
+            below = parent[at] if part == 1 else -1
+    return count
 
 
 def accumulate(parent: Indices, step: Array, total: Array) -> None:

@@ -33,8 +33,6 @@ from mdr_core.typing import Array, Flags, Indices
 
 # A step adds at most three vertices: the one on the axis, a corner and the load point.
 _VERTICES: Final = 3
-# Numbers of an interval of springs that slip.
-_INTERVAL: Final = 7
 
 
 class LoadPoints(NamedTuple):
@@ -124,18 +122,6 @@ class VertexTree:
         total = np.empty(step.shape)
         kernel.accumulate(self.parent, step, total)
         return total
-
-    @property
-    def slip_intervals(self) -> Array:
-        """Intervals of springs that slip, seven numbers each: see `slip_kernel.SlipFront`."""
-        vertex, *place = self.start
-        top, path = np.append(vertex, self.top), np.hstack([np.array(place)[:, None], self.path])
-        count = 3 * (self.parent.size + self.top.size)
-        while True:
-            room, intervals = count, np.empty((_INTERVAL, count))
-            count = kernel.SlipFront(self.parent, self.vertices, top, path, intervals).run()
-            if count <= room:
-                return intervals[:, :count]
 
 
 def follow(start: Polyline, points: LoadPoints) -> tuple[VertexTree, Polyline]:

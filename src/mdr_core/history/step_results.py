@@ -18,6 +18,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from mdr_core.history import slip_memory
+from mdr_core.history.friction_work import dissipation
 from mdr_core.history.slip_memory import LoadPoints, Polyline, VertexTree
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Indices
@@ -81,19 +82,8 @@ class TractionVertices:
 
     @property
     def dissipation(self) -> Array:
-        """G* D/(mu E*)^2 of every step [length^3], >= 0.
-
-        On each segment that the slip front sweeps it is the integral of a polynomial of degree 2
-        over the springs, in three intervals: see `slip_kernel.SlipFront`. In Bernstein moments of
-        the springs it is a sum of positive terms. Where forces are prescribed the identity holds
-        with the reduced force in place of the depth and the measure |d(1/2x)| in place of 2 dx.
-        Source: notes, §10.
-        """
-        intervals, count = self.tree.slip_intervals, self.tree.top.size
-        if not intervals.size:
-            return np.zeros(count)
-        work = _work(self.moments, intervals)
-        return np.asarray(np.bincount(intervals[6].astype(np.intp), work, count), dtype=float)
+        """G* D/(mu E*)^2 of every step [length^3], >= 0."""
+        return dissipation(self.moments, self.tree)
 
     @cached_property
     def square(self) -> Array:
@@ -145,23 +135,6 @@ def variance_growth(
     return np.asarray(
         np.square(growth) * spread / some_width + inner * width / outer * np.square(apart)
     )
-
-
-def _work(moments: IntervalMoments, intervals: Array) -> Array:
-    """Return G* D/(mu E*)^2 of each interval, given by its seven numbers."""
-    (low, length), coefficients, full = intervals[:2], intervals[2:5], intervals[5]
-    edges = moments.contact_coordinate(np.append(low, low + length)).reshape(2, -1)
-    weights = moments.over(low, length, edges).weights
-    # Over forces the measure is infinite on the axis, where M is zero.
-    some = coefficients > 0
-    work = np.multiply(coefficients, weights, where=some, out=np.zeros(weights.shape)).sum(axis=0)
-    slides = np.flatnonzero(full > 0)
-    if slides.size:
-        # Prescribed forces do not exceed friction: full slip is rounding error there.
-        at = edges[0, slides]
-        mean = moments.conjugate(at) + length[slides] * moments.profile.contact_radius(at)
-        work[slides] = 0.0 if moments.over_forces else work[slides] + full[slides] * mean
-    return np.asarray(work)
 
 
 class _Block(NamedTuple):

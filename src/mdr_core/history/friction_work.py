@@ -1,0 +1,126 @@
+"""Work of friction on each step, from the parts of the polylines that the slip front sweeps.
+
+On a step from P to P' the load point moves evenly. A spring slips from the moment at which it
+exceeds the load point in one of the sums, f or b, until the end of the step, or of its contact. Its
+anchor moves by the decrease of this sum since then, under the friction n_P - n, which changes
+evenly. The work on the spring, over (mu E*)^2/G*, is
+
+    M(n) = (decrease of the sum) (friction at first + friction at last)/2,
+
+and that on all of them int M(n) 2 dx. Both factors are linear in n between the vertices, the normal
+coordinate of P', and the place at which the path of P passes through the polyline, beyond which the
+other sum is exceeded first. In Bernstein moments of the springs the work is a sum of positive
+terms. Where forces are prescribed the identity holds with the reduced force in place of the depth
+and the measure |d(1/2x)| in place of 2 dx. Source: notes, §10.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from mdr_core.elementwise import number
+from mdr_core.history import slip_kernel as kernel
+from mdr_core.history.slip_memory import VertexTree
+from mdr_core.interval_moments import IntervalMoments
+from mdr_core.typing import Array, Indices
+
+# Numbers of a part in the kernel.
+_NUMBERS = 6
+
+
+class SweptParts(NamedTuple):
+    """Parts of straight segments that the slip front sweeps; m in all steps."""
+
+    step: Indices
+    fallen: Array
+    """Decrease of both coordinates of the load point on the step, shape (2, m)."""
+    low: Array
+    """Normal coordinate of the lower end."""
+    upper: Array
+    """Distance of the upper end from P in the normal coordinate and the anchor, shape (2, m)."""
+    run: Array
+    """Distance of the lower end from the upper one, free of cancellation, shape (2, m)."""
+
+    @property
+    def ends(self) -> Array:
+        """Distances of both ends from P: coordinate, upper and lower end, shape (2, 2, m)."""
+        return np.stack([self.upper, self.upper + self.run], axis=1)
+
+    @property
+    def sides(self) -> Array:
+        """Cross products of P' and both ends: positive where b is exceeded first."""
+        (n, s), ends = self.fallen, self.ends
+        return np.asarray(ends[1] * n - ends[0] * s)
+
+    def divided(self, share: Array) -> "SweptParts":
+        """Return the parts, divided at a share of their length from the upper end, if inside."""
+        at = np.flatnonzero((share > 0) & (share < 1))
+        above = SweptParts._make(row[..., at] for row in self)
+        first, rest = share[at] * above.run, (1 - share[at]) * above.run
+        self.upper[:, at], self.run[:, at] = above.upper + first, rest
+        pairs = zip(self, above._replace(low=above.low + rest[0], run=first), strict=True)
+        return SweptParts._make(np.concatenate(pair, axis=-1) for pair in pairs)
+
+
+def dissipation(moments: IntervalMoments, tree: VertexTree) -> Array:
+    """Return G* D/(mu E*)^2 of every step [length^3], >= 0."""
+    parts = swept(tree)
+    span = parts.run[0]
+    ended = (parts.fallen[0] - parts.upper[0]) / np.where(span > 0, span, 1.0)
+    parts = parts.divided(ended)
+    upper, lower = parts.sides
+    passes = upper * lower < 0
+    parts = parts.divided(np.where(passes, upper / np.where(passes, upper - lower, 1.0), 0.0))
+    terms, low, length = _work(parts), parts.low, parts.run[0]
+    if moments.over_forces:
+        # Prescribed forces do not exceed friction: work on the axis is rounding error.
+        terms[0, low == 0] = 0.0
+    edges = moments.contact_coordinate(np.append(low, low + length)).reshape(2, -1)
+    weights = moments.over(low, length, edges).weights
+    # Over forces the measure is infinite on the axis, where M is zero.
+    work = np.multiply(terms, weights, where=terms > 0, out=np.zeros(terms.shape)).sum(axis=0)
+    # All springs of a flat are on the axis.
+    flat = 2 * float(moments.profile.contact_radius(number(0.0)))
+    work += np.where(low == 0, flat * terms[0], 0.0)
+    return np.asarray(np.bincount(parts.step, work, tree.top.size), dtype=float)
+
+
+def _work(parts: SweptParts) -> Array:
+    """Return the Bernstein coefficients of M on each part, upwards, >= 0, shape (3, m)."""
+    (n_end, s_end), sides = parts.fallen, parts.sides
+    backward = (n_end + s_end <= 0) | ((n_end > s_end) & (sides[0] + sides[1] >= 0))
+    sign = np.where(backward, -1.0, 1.0)
+    fall = n_end + sign * s_end
+    n, s = parts.ends
+    first, last = np.maximum(-sign * sides / fall, 0.0), np.maximum(n - n_end, 0.0)
+    # The contact of springs above P' ends before the step.
+    in_contact, apart = fall - (n + sign * s), first * fall / np.where(n_end > 0, n_end, 1.0)
+    high, low = np.where(n < n_end, apart, np.maximum(in_contact, 0.0))
+    high_friction, low_friction = (first + last) / 2
+    between = (low * high_friction + high * low_friction) / 2
+    return np.array([low * low_friction, between, high * high_friction])
+
+
+def swept(tree: VertexTree) -> SweptParts:
+    """Return what the slip front sweeps of the polyline before each step, and of the path of P."""
+    vertex, *place = tree.start
+    path = np.hstack([np.array(place)[:, None], tree.path])
+    (n, n_end), (s, s_end) = ((row[:-1], row[1:]) for row in path)
+    # Contact begins, or ends, where the straight step crosses normal coordinate zero.
+    touch, moved = np.maximum(n, n_end) > 0, n - n_end
+    crossing = s + (s_end - s) * n / np.where(touch & (moved != 0), moved, 1.0)
+    s, s_end = np.where(n > 0, s, crossing), np.where(n_end > 0, s_end, crossing)
+    n, n_end = np.maximum(n, 0.0), np.maximum(n_end, 0.0)
+    fallen = np.where(touch, [n - n_end, s - s_end], 0.0)
+    tops, count = np.append(vertex, tree.top[:-1]), tree.parent.size + tree.top.size
+    while True:
+        room, found = count, np.empty((_NUMBERS, count))
+        count = kernel.sweep(tree.parent, tree.vertices, tops, fallen, found)
+        if count <= room:
+            break
+    # Springs that come into contact slip at once where the path is steeper than friction.
+    new = np.flatnonzero((fallen[0] < 0) & (np.abs(fallen[1]) > -fallen[0]))
+    fresh = np.array([new, n[new], *fallen[:, new], *-fallen[:, new]])
+    step, low, *places = np.hstack([found[:, :count], fresh])
+    step = step.astype(np.intp)
+    return SweptParts(step, fallen[:, step], low, np.array(places[:2]), np.array(places[2:]))
