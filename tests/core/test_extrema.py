@@ -162,14 +162,6 @@ def test_maxima_of_many_loads_match_single_loads(profile: Profile) -> None:
     assert together.tolist() == pytest.approx(alone, rel=2e-15, abs=0)
 
 
-def test_maxima_of_many_profiles_match_single_profiles() -> None:
-    b, a = np.array([0.1, 0.5]), np.array([0.7, 0.6])
-    swept = normal.solve(RoundedPunch(b, 1.0), E_STAR, contact_radius=a).maximum_pressure
-    for i in range(2):
-        alone = normal.solve(RoundedPunch(float(b[i]), 1.0), E_STAR, contact_radius=a[i])
-        assert swept[i] == pytest.approx(float(alone.maximum_pressure), rel=2e-15, abs=0)
-
-
 B, R = 0.5, 4.0
 # Root of y tanh(y) = 1.
 LAPLACE = 1.1996786402577339
@@ -219,12 +211,6 @@ def test_maximum_shear_stress_of_a_truncated_paraboloid(beyond: float, part: flo
     assert float(pushed.maximum_shear_stress) == pytest.approx(expected, rel=1e-13, abs=0)
 
 
-def test_maximum_pressure_of_a_tabulated_paraboloid() -> None:
-    r = np.linspace(0.0, 1.0, 9)
-    contact = normal.solve(Tabulated(r, r * r / 2), E_STAR, contact_radius=0.6)
-    assert float(contact.maximum_pressure) == pytest.approx(2 * E_STAR * 0.6 / pi, rel=1e-9, abs=0)
-
-
 def test_pressure_is_unbounded_at_tips_and_edges() -> None:
     for profile in (Cone(0.1), FlatPunch(1.0)):
         contact = normal.solve(profile, E_STAR, indentation_depth=[0.0, 0.1])
@@ -242,17 +228,6 @@ def test_shear_stress_is_unbounded_where_slip_reaches_a_sharp_edge() -> None:
     for force, expected in ((0.0, 0.0), (0.1, inf)):
         tangential_contact = tangential.solve(flat, G_STAR, MU, tangential_force=force)
         assert float(tangential_contact.maximum_shear_stress) == expected
-
-
-def test_maxima_of_paraboloid_sweep_match_single_profiles() -> None:
-    R, force = np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.2, 0.3])
-    swept = normal.solve(Paraboloid(R), E_STAR, normal_force=force)
-    tangential_contact = tangential.solve(swept, G_STAR, MU, tangential_force=force * MU / 2)
-    for i in range(3):
-        alone = normal.solve(Paraboloid(float(R[i])), E_STAR, normal_force=float(force[i]))
-        single = tangential.solve(alone, G_STAR, MU, tangential_force=float(force[i] * MU / 2))
-        assert swept.maximum_pressure[i] == alone.maximum_pressure
-        assert tangential_contact.maximum_shear_stress[i] == single.maximum_shear_stress
 
 
 def _punch_pressure(r: mpf, edge: mpf) -> mpf:

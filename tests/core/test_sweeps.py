@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mdr_core import normal, profiles, tangential
+from mdr_core import normal, tangential
 from mdr_core.errors import InputError
 from mdr_core.profiles import (
     CappedParaboloid,
@@ -15,14 +15,11 @@ from mdr_core.profiles import (
     Hyperboloid,
     Paraboloid,
     Power,
-    PowerTerm,
     Profile,
     RoundedCone,
     RoundedPunch,
-    Series,
     Sphere,
     SphericalTipCone,
-    Tabulated,
     TruncatedCone,
     TruncatedParaboloid,
 )
@@ -208,28 +205,6 @@ def test_dissipated_energy_of_a_sweep_is_bit_identical_to_single_cases(kind: str
         assert result.dissipated_energy[i] == alone.dissipated_energy, i
 
 
-EVERY = {
-    **{
-        kind: profile(**{name: float(values[0]) for name, values in named.items()})
-        for kind, (profile, named) in KINDS.items()
-    },
-    "power": Power(2.0, 3.5),
-    "series": Series((PowerTerm(1.0, 2.0), PowerTerm(3.0, 4.5))),
-    "rounded_cone": RoundedCone(0.1, 0.01),
-    "spherical_tip_cone": SphericalTipCone(0.1, 0.01),
-    "capped_paraboloid": CappedParaboloid(1e-3, 1.0, 0.01),
-    "tabulated": Tabulated([0.0, 0.1, 0.2, 0.3], [0.0, 0.01, 0.04, 0.09]),
-}
-
-
-@pytest.mark.parametrize("amount", [-1.0, -1e-200, -0.0, 0.0, np.nan])
-@pytest.mark.parametrize("kind", EVERY)
-def test_nonpositive_force_is_rejected_for_scalars(kind: str, amount: float) -> None:
-    # A sweep relies on this when it leaves the check of the modulus to the contact.
-    with np.errstate(invalid="ignore"):
-        assert not EVERY[kind].coordinate_from_load(np.array([amount]), of_force=True)[0] > 0
-
-
 def test_sweep_over_all_regimes_equals_single_cases() -> None:
     contact = normal.solve(Paraboloid(0.01), E_STAR, normal_force=np.full(MANY, 10.0))
     loads = np.linspace(-2.0, 2.0, MANY)
@@ -256,23 +231,6 @@ def test_each_case_has_its_own_error_estimate(profile: Any, control: str) -> Non
     assert together.error_estimate == max(each.error_estimate for each in alone)
 
 
-def test_each_power_has_its_own_error_estimate() -> None:
-    exponents = np.array([1.0, 2.0, 100.0])
-    together = normal.solve(Power(np.ones(3), exponents), 1e11, indentation_depth=1e-5)
-    alone = [normal.solve(Power(1.0, n), 1e11, indentation_depth=1e-5) for n in exponents]
-    assert together.error_estimates.tolist() == [each.error_estimate for each in alone]
-
-
-@pytest.mark.parametrize("wrong", [np.nan, np.inf, 1e3])
-def test_invalid_tangential_force_is_rejected_with_its_index(wrong: float) -> None:
-    contact = normal.solve(Paraboloid(0.01), E_STAR, normal_force=np.full(MANY, 10.0))
-    loads = np.full(MANY, 1.0)
-    loads[PLACE] = wrong
-    with pytest.raises(InputError) as refused:
-        tangential.solve(contact, 0.9e11, 0.3, tangential_force=loads)
-    assert refused.value.path == ("tangential", "tangential_force", PLACE)
-
-
 @pytest.mark.parametrize("control", ["tangential_force", "tangential_displacement"])
 def test_flags_hold_for_their_case_alone(control: str) -> None:
     """Sign and full slip are single values where no case differs."""
@@ -285,36 +243,6 @@ def test_flags_hold_for_their_case_alone(control: str) -> None:
     assert np.array_equal(result.full_slip, beyond)
     assert np.array_equal(result.sign, np.where(beyond, -1.0, 1.0))
     assert np.array_equal(result.tangential_force < 0, beyond)
-
-
-@pytest.mark.parametrize(
-    "sweep",
-    [
-        (profiles.Power, (np.array([1.0, 2.0, 0.5]), np.array([1.5, 2.0, 3.3]))),
-        (profiles.Sphere, (np.array([1.0, 2.0, 3.0]),)),
-        (profiles.RoundedPunch, (0.3, np.array([1.0, 2.0, 3.0]))),
-        (profiles.RoundedCone, (0.3, np.array([1.0, 2.0, 3.0]))),
-    ],
-    ids=lambda sweep: sweep[0].kind,
-)
-def test_dissipated_energy_of_a_sweep_equals_that_of_single_cases(
-    sweep: tuple[type[profiles.Profile], tuple[Any, ...]],
-) -> None:
-    kind, parameters = sweep
-    e_star, force = np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.2, 0.05])
-
-    def dissipated(body: profiles.Profile, *numbers: Any) -> Any:
-        contact = normal.solve(body, numbers[0], normal_force=numbers[1])
-        tangential_load = tangential.solve(contact, 0.9, 0.3, tangential_force=0.1 * numbers[1])
-        return tangential_load.dissipated_energy
-
-    result = dissipated(kind(*parameters), e_star, force)
-    columns = np.broadcast_arrays(*parameters, e_star, force)
-    for i, numbers in enumerate(zip(*(column.tolist() for column in columns), strict=True)):
-        own = kind(*numbers[: len(parameters)])
-        assert result[i] == pytest.approx(
-            dissipated(own, *numbers[len(parameters) :]), rel=1e-14, abs=0
-        )
 
 
 def test_prescribed_stick_radius_below_a_computed_edge() -> None:

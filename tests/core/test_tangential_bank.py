@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
-
 from mdr_core import normal, tangential
 from tests.core.batches import batched
 from tests.core.comparison import (
@@ -71,16 +69,3 @@ def failures_of(case: dict[str, Any]) -> list[str]:
 @batched(bank.load("tangential"))
 def test_results_and_error_estimates(cases: list[dict[str, Any]]) -> None:
     assert_each(cases, failures_of)
-
-
-@batched(bank.load("tangential")[::7])
-def test_single_load_equals_one_of_many(cases: list[dict[str, Any]]) -> None:
-    for case in cases:
-        result = solved(case)
-        alone = solved({**case, "given": case["given"][0]})
-        for name in case["expected"]:
-            value = getattr(alone, name)
-            assert value.shape == ()
-            # The same steps, possibly summed in a different order.
-            expected = pytest.approx(float(getattr(result, name)[0]), rel=1e-14, abs=0)
-            assert float(value) == expected, (case["id"], name)

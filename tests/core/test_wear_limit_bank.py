@@ -5,8 +5,6 @@ from __future__ import annotations
 from math import inf, isfinite
 from typing import TYPE_CHECKING, Any
 
-import pytest
-
 from mdr_core import normal
 from mdr_core.wear import limit
 from tests.core.batches import batched
@@ -115,15 +113,3 @@ def field_failures(case: dict[str, Any]) -> Iterator[str]:
 @batched(CASES)
 def test_fields(cases: list[dict[str, Any]]) -> None:
     assert_each(cases, field_failures)
-
-
-@batched(CASES[::5])
-def test_single_amplitude_equals_one_of_many(cases: list[dict[str, Any]]) -> None:
-    for case in cases:
-        result, alone = solved(case), solved(case, case["given"][0])
-        for name in case["expected"]:
-            value = getattr(alone, name)
-            assert value.shape == ()
-            # The same steps, possibly summed in a different order.
-            expected = pytest.approx(float(getattr(result, name)[0]), rel=1e-13, abs=0)
-            assert float(value) == expected, (case["id"], name)

@@ -2,10 +2,9 @@
 
 python -m tests.fuzz.campaign [--queries N] [--seed S] [--report FILE]     # make fuzz
 
-Every query is sent by POST. Some are repeated by GET, in a batch, as CSV, NumPy arrays and SVG, at
-the tightest tolerance, in other units, and as the inverse or an equivalent query. Query i of seed S
-does not depend on earlier queries. The report has one entry per class of failures, with the
-shortest query of the class.
+Some queries are repeated at the tightest tolerance, and as the inverse or an equivalent query.
+Query i of seed S does not depend on earlier queries. The report has one entry per class of
+failures, with the shortest query of the class.
 """
 
 import argparse
@@ -14,7 +13,7 @@ import re
 import sys
 import traceback
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from random import Random
@@ -24,9 +23,8 @@ from typing import Any, Final
 import numpy as np
 
 from tests.contract import strict_json
-from tests.fuzz import formats, laws, ordinary_cases
-from tests.fuzz.service import PATHS, Reply, Service
-from tests.fuzz.units import Units, exactly_scalable, is_representable, scaled, scaled_result
+from tests.fuzz import laws, ordinary_cases
+from tests.fuzz.service import Reply, Service
 
 SOLVED: Final = 0.7
 """Smallest accepted fraction of queries with a result."""
@@ -68,11 +66,6 @@ class Failures:
         ]
 
 
-def _is_never_rejected(profile: Mapping[str, Any], detail: str) -> bool:
-    """Report whether the interpolation cannot be the cause, because the service may choose it."""
-    return "between the points" in detail and profile.get("interpolation", "auto") == "auto"
-
-
 def _where(error: BaseException) -> str:
     """Return the type of an internal error and its last frames within this project."""
     frames = [f for f in traceback.extract_tb(error.__traceback__) if "/src/mdr_" in f.filename]
@@ -89,10 +82,9 @@ class Campaign:
         self.failures = Failures()
         self.statuses: Counter[str] = Counter()
         self.slowest = (0.0, "")
-        self._recent: list[tuple[str, Any, Reply]] = []
 
     def run_query(self, index: int) -> None:
-        """Send query number `index` of the seed in all its formats."""
+        """Send query number `index` of the seed, and those that have to agree with it."""
         random = Random(f"{self.seed} {index}")
         name, body = ordinary_cases.query(random)
         start = thread_time()
@@ -100,11 +92,9 @@ class Campaign:
         self.slowest = max(self.slowest, (thread_time() - start, f"query {index}: {name}"))
         self.statuses[f"{name} {reply.status}"] += 1
         result = self._checked_result(name, body, reply)
-        for label in self._repeat(random, name, body, reply, result):
-            self.failures.add(f"{name}: {label}", name, body)
-        self._recent.append((name, body, reply))
-        if len(self._recent) == 6:
-            self._batch()
+        if result:
+            for label in self._repeat(random, name, body, result):
+                self.failures.add(f"{name}: {label}", name, body)
 
     def _checked_result(self, name: str, body: Any, reply: Reply) -> dict[str, Any] | None:
         """Return the result, if any; record what is wrong with the reply."""
@@ -124,64 +114,26 @@ class Campaign:
             return dict(document)
         self.statuses[f"{name} 422 {document['type']}"] += 1
         expected = document.get("errors") and (
-            document["type"] in REJECTED or "finer resolution" in document["detail"]
+            document["type"] in REJECTED or "more nodes" in document["detail"]
         )
-        if not expected or _is_never_rejected(body["profile"], document["detail"]):
+        if not expected:
             detail = re.sub(r"[-+.\d]+(e[-+]?\d+)?", "#", document["detail"])
             self.failures.add(f"{name}: {document['type']}: {detail}", name, body)
         return None
 
     def _repeat(
-        self, random: Random, name: str, body: Any, reply: Reply, result: dict[str, Any] | None
+        self, random: Random, name: str, body: Any, result: dict[str, Any]
     ) -> Iterator[str]:
-        if reply.status in {200, 422}:
-            if random.random() < 0.3 and (address := formats.get_parameters(name, body)):
-                got = self.service.send("GET", PATHS[name], query_string=address)
-                if got.status != reply.status or (result and got.content != reply.content):
-                    yield f"GET answers {got.status}, or differs from POST"
-            yield from self._check_formats(random, name, body, reply.status, result)
-        if not result:
-            return
         if random.random() < 0.15:
             other = self._result_of(name, body | {"rtol": 1e-10 if name == "evolution" else 1e-13})
             if other:
                 for each in laws.disagreements(name, result, other):
                     yield f"at the tightest rtol {each}"
-        if random.random() < 0.15 and exactly_scalable(body):
-            units = Units(2.0 ** random.randint(-20, 20), 2.0 ** random.randint(-20, 20))
-            yield from self._scaled(name, body, result, units)
         yield from self._equivalent(random, name, body, result)
 
     def _result_of(self, name: str, body: Any) -> dict[str, Any] | None:
         reply = self.service.post(name, body)
         return self._checked_result(name, body, reply)
-
-    def _check_formats(
-        self, random: Random, name: str, body: Any, status: int, result: dict[str, Any] | None
-    ) -> Iterator[str]:
-        for form, share in (("csv", 0.1), ("npz", 0.1), ("svg", 0.01)):
-            if random.random() >= share or (name == "evolution" and form != "csv"):
-                continue
-            reply = self.service.post(name, body, form)
-            if reply.status == 406:
-                continue
-            if reply.status != status:
-                why = _where(reply.defect) if reply.defect else reply.content[:200].decode()
-                yield f"{form} answers {reply.status} instead of {status} {why}"
-            elif result:
-                yield from formats.READERS[form](result, reply.content)
-
-    def _scaled(self, name: str, body: Any, result: Any, units: Units) -> Iterator[str]:
-        changed = scaled(body, units)
-        if not is_representable(changed):
-            return
-        other = self._result_of(name, changed)
-        if not other:
-            yield "no result in other units"
-            return
-        back = scaled_result(other, Units(1 / units.length, 1 / units.force))
-        for each in laws.disagreements(name, result, back):
-            yield f"in other units {each}"
 
     def _equivalent(self, random: Random, name: str, body: Any, result: Any) -> Iterator[str]:
         """Yield disagreements with the inverse query, or with the history of the same loading."""
@@ -236,23 +188,6 @@ class Campaign:
                     quarter | {"error_estimate": result["error_estimate"]},
                     other,
                 )
-
-    def _batch(self) -> None:
-        """Send the last queries in one batch: each entry equals the single response."""
-        recent, self._recent = self._recent, []
-        recent = [each for each in recent if each[2].status in {200, 422}]
-        queries = [{"ask": name, "request": body} for name, body, _ in recent]
-        reply = self.service.post("batch", {"queries": queries})
-        if reply.status != 200:
-            self.failures.add(f"batch: {reply.status} {reply.content[:200]!r}", "batch", queries[0])
-            return
-        entries: Any = strict_json.loads(reply.content)
-        for (name, body, alone), entry in zip(recent, entries["answers"], strict=True):
-            same = entry["status"] == alone.status and (
-                alone.status != 200 or alone.content in reply.content
-            )
-            if not same:
-                self.failures.add(f"{name}: batch differs from POST", name, body)
 
 
 def _differ(label: str, quantity: str, one: Any, other: Any) -> Iterator[str]:

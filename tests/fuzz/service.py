@@ -46,19 +46,17 @@ class Service:
         logging.getLogger().handlers = [handler]
         signal.signal(signal.SIGPROF, self._stop)
 
-    def post(self, name: str, body: Any, form: str = "json") -> Reply:
-        return self.send("POST", PATHS.get(name, f"/v1/{name}"), json.dumps(body), f"format={form}")
-
-    def send(self, method: str, path: str, body: str = "", query_string: str = "") -> Reply:
+    def post(self, name: str, query: Any) -> Reply:
+        path, body = PATHS[name], json.dumps(query)
         scope = {
             "type": "http",
             "http_version": "1.1",
             "scheme": "http",
             "root_path": "",
-            "method": method,
+            "method": "POST",
             "path": path,
             "raw_path": path.encode(),
-            "query_string": query_string.encode(),
+            "query_string": b"",
             "client": None,
             "server": None,
             "headers": [(b"content-type", b"application/json")],

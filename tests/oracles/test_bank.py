@@ -51,11 +51,6 @@ def test_every_kind_has_pressures_and_equivalent_profiles() -> None:
         assert {r["profile"]["kind"] for r in bank.load(name)} == set(KINDS)
 
 
-def test_pressures_are_compressive() -> None:
-    for record in bank.load("pressure"):
-        assert all(float(p) > 0 for p in record["expected"]), record["id"]
-
-
 ILL_CONDITIONED = {
     "tangential": 482,
     "wear_limit": 107,
