@@ -327,7 +327,13 @@ class _Model:
         return float(left @ left), float(values[0]) / top, float(values[1])
 
     def refined(self, start: _Parameters, low: float, high: float) -> _Parameters:
-        """Return the nearest minimum, with the contact point between its limits."""
+        """Return the parameters of the nearest minimum.
+
+        Parameters
+        ----------
+        start : parameters from which the search starts.
+        low, high : limits of the contact point [length].
+        """
         size = float(np.abs(self.force).max()) or 1.0
         units = start | {"contact_point": high - low, "force_offset": size}
         unit = np.array([units[name] for name in self.fit])
@@ -378,7 +384,13 @@ class _Model:
     def result(
         self, found: _Parameters, noise: float | None, body_thickness: float | None, rtol: float
     ) -> Fit:
-        """Return the fit with these parameters, or an InputError."""
+        """Return the fit with the best parameters, or an InputError.
+
+        Parameters
+        ----------
+        found : the parameters.
+        noise, body_thickness, rtol : see `solve`.
+        """
         forces, slopes = self.at(found)
         _require_points(int(np.sum(forces != found["force_offset"])), self)
         residual = self.force - forces

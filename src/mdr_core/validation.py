@@ -30,9 +30,14 @@ TIGHTEST, LOOSEST = 1e-13, 1e-3
 
 
 def require_type(name: str, value: object, types: Any, needed: str) -> None:
-    """Raise InputError unless a value is of one of the types, which `needed` describes.
+    """Raise InputError unless a value is of one of the types.
 
-    A value with a reason why it is `unusable` here is rejected as well.
+    Parameters
+    ----------
+    name : that of the argument.
+    value : the argument; one with a reason why it is `unusable` here is rejected as well.
+    types : a type, or several.
+    needed : words for these types in the message.
     """
     if reason := getattr(value, "unusable", ""):
         raise InputError((name,), reason)
@@ -168,8 +173,12 @@ def require_inside(
 ) -> None:
     """Raise InputError at the first load under which the contact would exceed the `domain`.
 
-    `domain` is the radius at which the profile ends [length], `path` the place of the loads, and
-    `cause` their word in the message.
+    Parameters
+    ----------
+    path : place of the loads in the input.
+    outside : true for the loads that are too large.
+    domain : radius at which the profile ends [length].
+    cause : word for the loads in the message.
     """
     if some(outside):
         end = np.broadcast_to(domain, outside.shape)[outside].flat[0]

@@ -32,10 +32,14 @@ _SETTINGS: Final = {
 def in_workers(
     spec: Spec, chunks: Iterable[Chunk], address: str | None, processes: int
 ) -> Generator[Chunk, None, None]:
-    """Yield each chunk as it is completed by the workers of the scheduler at an address.
+    """Yield each chunk as it is completed by workers; Dask solves those of lost workers again.
 
-    Without an address, `processes` workers are started on this machine. Dask replaces those that
-    are lost, and solves their chunks again.
+    Parameters
+    ----------
+    spec : the sweep.
+    chunks : index and cases of each chunk.
+    address : that of a Dask scheduler; None to start workers on this machine.
+    processes : number of workers to start.
     """
     distributed = import_module("distributed")
     import_module("dask").config.set(_SETTINGS)
@@ -67,7 +71,15 @@ def in_workers(
 
 
 def solve(spec: Spec, expected: dict[str, str], index: int, batch: bytes) -> Chunk:
-    """Return a solved chunk, in a worker that has the expected versions."""
+    """Return a solved chunk, in a worker.
+
+    Parameters
+    ----------
+    spec : the sweep.
+    expected : versions of the packages, which the worker must have.
+    index : number of the chunk.
+    batch : cases of the chunk as an Arrow stream.
+    """
     if versions() != expected:
         raise SweepError(f"a worker has {versions()}, the client {expected}")
     with pa.ipc.open_stream(batch) as reader:

@@ -106,10 +106,14 @@ class PolylineStack:
         return made
 
     def move(self, x: float, y: float, continues: bool, load_step: int) -> None:  # noqa: FBT001
-        """Move the load point straight to (x, y), normal and tangential coordinate.
+        """Move the load point by one straight step.
 
-        A step without slip that `continues` the straight line of the one before extends its
-        segment.
+        Parameters
+        ----------
+        x, y : normal and tangential coordinate after the step; x <= 0 in separation.
+        continues : true if the step continues the straight line of the one before: without slip it
+            extends the last segment.
+        load_step : number by which the segments of the step are found again.
         """
         x0 = self.x
         y0 = self.y

@@ -374,7 +374,13 @@ class Profile(ABC):
         return (Branch(0.0, lambda x, _: self.dg(x), tip=tip, steepness=steepness),)
 
     def branch_weights(self, x: Array, s: Array, owner: Indices) -> Array:
-        """Weights g'(x) s/x at places (n, m) of the branches `owner` (m,)."""
+        """Weights g'(x) s/x of the integrals over s [1], shape (n, m).
+
+        Parameters
+        ----------
+        x, s : radii, and their contact coordinates beyond the branches' bases [length], (n, m).
+        owner : index of the branch of each column, shape (m,).
+        """
         found = np.empty_like(x)
         for i, branch in enumerate(self.branches):
             own = owner == i
@@ -382,7 +388,14 @@ class Profile(ABC):
         return found
 
     def annulus_integrals(self, low: Array, width: Array, *kernels: Kernel, rtol: float) -> Array:
-        """Integrals int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width; (k, m) for k K."""
+        """Integrals int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, shape (k, m).
+
+        Parameters
+        ----------
+        low, width : inner radii and widths of the annuli [length], shape (m,).
+        kernels : k functions K.
+        rtol : relative tolerance.
+        """
         r = low + width
         return slope_integral(self.branches, low, r, r, *kernels, rtol=rtol, width=width)
 

@@ -312,7 +312,7 @@ class Tabulated(Profile):
         )
 
     def branch_weights(self, x: Array, s: Array, owner: Indices) -> Array:
-        """g'(x) s/x at places (n, m) of the branches `owner` (m,)."""
+        """Parameters: see `Profile`."""
         if not self._flanks:
             return np.asarray(self._spline.slope(x))
         return super().branch_weights(x, s, owner)
@@ -332,6 +332,8 @@ class Tabulated(Profile):
         return np.asarray(slope)
 
     def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+        """Closed, whatever the tolerance. Parameters: see `Profile`."""
+
         def under(low: float, at: Array) -> Array:
             return 2 / np.pi * self._spline.under(low, self._end, at, arccosine)
 
@@ -343,6 +345,7 @@ class Tabulated(Profile):
         return value
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
+        """Closed, whatever the tolerance. Parameters: see `Profile`."""
         value = 2 / np.pi * self._spline.under(0.0, float(a[0]), r, arcsine)
         for factor, shape in self._flanks:
             if a[0] > shape.flat_radius:

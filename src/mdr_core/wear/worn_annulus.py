@@ -38,8 +38,14 @@ def angle(stick: Array, width: Array) -> Array:
 def worn_volume(profile: Profile, stick: Array, width: Array, step: Array) -> Array:
     """Return 4 int_c^r (d - g(x)) sqrt(r^2 - x^2) dx = 2 pi int_c^r h r dr [length^3].
 
-    `step` = d - g(c). At the outer edge the derivative by the width vanishes with the worn
-    depth h, so that the rounding error of the width has no effect. Source: notes, §9.
+    At the outer edge the derivative by the width vanishes with the worn depth h, so that the
+    rounding error of the width has no effect. Source: notes, §9.
+
+    Parameters
+    ----------
+    profile : the unworn profile.
+    stick, width : stick radii c and widths of the worn annuli [length], shape (n,).
+    step : d - g(c) [length], shape (n,).
     """
     constant = _segment(stick, _root(stick, width))
     inner = profile.annulus_integrals(stick, width, _segment, rtol=RTOL)[0]
@@ -51,6 +57,13 @@ def width_where_worn(profile: Profile, stick: Array, step: Array, start: Array) 
 
     There the mean of g(r cos(t)) - g(c) over 0 < t < arccos(c/r) equals the step d - g(c). It grows
     with the width wherever g does. Source: mdr-5, Eq. (5.88), for any profile; notes, §9.
+
+    Parameters
+    ----------
+    profile : the unworn profile.
+    stick : stick radii c [length], shape (n,).
+    step : d - g(c) [length], shape (n,).
+    start : widths from which the search starts [length], shape (n,).
     """
 
     def mean_rise(width: Array) -> tuple[Array, Array]:

@@ -194,7 +194,16 @@ def response_metadata(
     error: float,
     warnings: Iterable[Notice],
 ) -> Result:
-    """Return the method, the error estimates and the warnings of a response."""
+    """Return the method, the error estimates and the warnings of a response.
+
+    Parameters
+    ----------
+    query : the request, with the bodies and the required accuracy.
+    source : the solution.
+    method : name of the method.
+    error : error estimate of all numbers of the response, its fields included.
+    warnings : those to be reported.
+    """
     contact = source.tangential_contact if isinstance(source, Wear) else source
     own = np.ravel(validity.model_error(contact, query.material.effective))
     count = query.path.samples if isinstance(query, HistoryQuery) else query.loads
