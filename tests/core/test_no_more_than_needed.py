@@ -139,7 +139,7 @@ def test_stick_radius_needs_no_dissipated_energy(kind: str) -> None:
 def test_field_computes_no_other_field(kind: str) -> None:
     tangential_contact = solved(profile_of(kind), 1e-10)
     with (
-        patch.object(type(tangential_contact.normal.profile), "slip_kernel", never),
+        patch.object(type(tangential_contact.normal.profile), "slip_integral", never),
         patch.object(type(tangential_contact.normal.profile), "outer_displacement", never),
         patch.object(type(tangential_contact.normal.profile), "reduced_energy", never),
     ):
@@ -226,7 +226,7 @@ def run_stress(**more: Any) -> dict[str, Any]:
 def test_pressure_needs_no_friction_slip_or_energy() -> None:
     with (
         patch.object(tangential, "solve", never),
-        patch.object(Profile, "slip_kernel", never),
+        patch.object(Profile, "slip_integral", never),
         patch.object(Profile, "outer_displacement", never),
         patch.object(Profile, "reduced_energy", never),
     ):
@@ -239,7 +239,7 @@ def test_pressure_needs_no_friction_slip_or_energy() -> None:
 @pytest.mark.parametrize("quantities", [["pressure"], ["pressure", "shear_stress"]])
 def test_shear_stress_needs_no_slip(quantities: list[str]) -> None:
     with (
-        patch.object(Profile, "slip_kernel", never),
+        patch.object(Profile, "slip_integral", never),
         patch.object(tangential, "slip_moment", never),
     ):
         answer = run_stress(quantities=quantities, **LOADED)

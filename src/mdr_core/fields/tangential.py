@@ -165,7 +165,7 @@ def slip(
             slips = inside & (r > front)
             if below != above and slips.any():
                 at = r[slips]
-                kernel = load.profile.slip_kernel(np.full(at.shape, front), at, rtol)
+                kernel = load.profile.slip_integral(np.full(at.shape, front), at, rtol)
                 result[slips] -= (above - below) * kernel
         for arc in filter(None, load.arcs):
             result[inside] -= arc.slip(r[inside], rtol)

@@ -399,7 +399,7 @@ class Profile(ABC):
         r = low + width
         return slope_integral(self.branches, low, r, r, *kernels, rtol=rtol, width=width)
 
-    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+    def slip_integral(self, c: Array, r: Array, rtol: float) -> Array:
         """Slip S(c; r) = (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx [length].
 
         S(0; r) is the profile itself. Source: mdr-5, Eqs. (5.40), (5.41).

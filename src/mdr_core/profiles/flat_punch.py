@@ -110,7 +110,7 @@ class FlatPunch(Profile):
         """
         return annulus.width / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
 
-    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+    def slip_integral(self, c: Array, r: Array, rtol: float) -> Array:
         """Zero: all springs slip at once. Parameters: see `Profile`."""
         return np.zeros(r.shape)
 

@@ -100,7 +100,7 @@ class Cone(Profile):
         factor = span / (stiffness * b * b * b * 6) / (1 + c) ** 3
         return factor * np.array([3 / c + 1, np.full_like(c, 4.0), 1 + 3 * c])
 
-    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+    def slip_integral(self, c: Array, r: Array, rtol: float) -> Array:
         """t [s - c arccos(c/r)], s = sqrt(r^2 - c^2).
 
         Source: notes, §4. Parameters: see `Profile`.
@@ -199,7 +199,7 @@ class Paraboloid(Profile):
         parts = 5 / c + 6 + 3 * c + squares, 3 + 9 * c + 3 * squares, upper
         return factor * np.array(parts)
 
-    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+    def slip_integral(self, c: Array, r: Array, rtol: float) -> Array:
         """(1/(pi R)) [c (s - c phi) + s^2 phi], s = sqrt(r^2 - c^2), phi = arccos(c/r).
 
         Source: mdr-5, Eq. (5.45). Parameters: see `Profile`.

@@ -331,7 +331,7 @@ class Tabulated(Profile):
                 slope = slope + factor * shape.weight(x, own) * s / own
         return np.asarray(slope)
 
-    def slip_kernel(self, c: Array, r: Array, rtol: float) -> Array:
+    def slip_integral(self, c: Array, r: Array, rtol: float) -> Array:
         """Closed, whatever the tolerance. Parameters: see `Profile`."""
 
         def under(low: float, at: Array) -> Array:
@@ -341,7 +341,7 @@ class Tabulated(Profile):
         for factor, shape in self._flanks:
             past = r > shape.flat_radius
             inner = np.maximum(c[past], shape.flat_radius)
-            value[past] += factor * shape.slip_kernel(inner, r[past], rtol)
+            value[past] += factor * shape.slip_integral(inner, r[past], rtol)
         return value
 
     def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:

@@ -27,7 +27,7 @@ def worn_depth(stick_zone: LimitingStick, outer: Array, r: Array) -> Array:
     worn &= (step > 0)[:, None]
 
     def values(load: Indices, at: Array) -> Array:
-        lag = profile.slip_kernel(c[load], at, RTOL)
+        lag = profile.slip_integral(c[load], at, RTOL)
         share = np.where(at > 0, 2 / np.pi * angle(c[load], at - c[load]), 1.0)
         # At the outer edge of the annulus the terms cancel but for rounding error.
         return np.asarray(np.maximum(share * step[load] - lag, 0.0))
