@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -268,61 +270,6 @@ def cases() -> Iterator[tuple[Family, str, float, str]]:
 
 #: Extreme ratios of parameters and loads, found by a random search for the least accuracy: name,
 #: equation, profile, E*, control and load.
-EXTREMES: tuple[tuple[str, str, Profile, float, str, float], ...] = (
-    *(
-        (
-            f"capped-paraboloid-sharp-{number}",
-            "(5.74)",
-            {"kind": "capped_paraboloid", "cap_radius": b, "tip_radius": tip, "radius": radius},
-            e_star,
-            control,
-            load,
-        )
-        for number, (b, tip, radius, e_star, control, load) in enumerate(
-            (
-                (0.0161278, 141.23, 4.86e-07, 8.1e9, "indentation_depth", 1.1668e-4),
-                (0.0161278, 141.23, 4.86e-07, 8.1e9, "normal_force", 3.04e4),
-                (0.0161278, 141.23, 4.86e-07, 8.1e9, "contact_radius", 0.0161279),
-                (1917.9501850290217, 49127093.6, 0.0783556, 1.0, "normal_force", 191.4831634144924),
-                (1.84e-08, 3.47e-14, 7.32e-22, 1.0, "indentation_depth", 0.00975232630480784),
-                (5.1e-08, 8.77e-17, 2.85e-24, 1.0, "contact_radius", 6e-08),
-                # The slope discontinuity is negligible, but the inverse has to cross it.
-                (
-                    0.25083630309819094,
-                    0.07425340857930318,
-                    0.0742534051155459,
-                    1.0,
-                    "normal_force",
-                    0.2833958695399503,
-                ),
-            )
-        )
-    ),
-    *(
-        (
-            f"spherical-tip-cone-steep-{number}",
-            "(5.74)",
-            {"kind": "spherical_tip_cone", "slope": slope, "tip_radius": tip},
-            e_star,
-            control,
-            load,
-        )
-        for number, (slope, tip, e_star, control, load) in enumerate(
-            (
-                (69.0, 1.3, 2.1e11, "indentation_depth", 6.5),
-                (69.0, 1.3, 2.1e11, "normal_force", 4e12),
-                (155.21863095877643, 5.223526696279248e-24, 1.0, "normal_force", 2.858337242e-46),
-                (991.6782726742906, 1.2966168613622617e-13, 1.0, "normal_force", 2.384819803e-25),
-                (2749.281637036084, 7.667992163758368e25, 1.0, "indentation_depth", 6.60386e26),
-            )
-        )
-    ),
-    (
-        "truncated-paraboloid-far",
-        "(5.74)",
-        {"kind": "truncated_paraboloid", "flat_radius": 3.31e-28, "radius": 1.02e-18},
-        1.0,
-        "normal_force",
-        0.4777114102447767,
-    ),
+EXTREMES: list[tuple[str, str, Profile, float, str, float]] = json.loads(
+    (Path(__file__).parents[1] / "data" / "extreme_contacts.json").read_text("utf-8")
 )

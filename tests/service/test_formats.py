@@ -4,6 +4,7 @@ import csv
 import io
 import json
 from math import inf
+from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import httpx
@@ -198,96 +199,34 @@ def test_identical_queries_give_identical_plots(client: Client) -> None:
     assert first.content == second.content
 
 
+# Requests whose pictures have nothing, a point, gaps or very much to draw.
+DEGENERATE = json.loads(
+    (Path(__file__).parents[1] / "data" / "degenerate_requests.json").read_text("utf-8")
+)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize(
-    "change",
-    [
-        {"load": {"normal_force": 0.0}, "tangential": {"tangential_force": 0.0}},
-        {"load": {"normal_force": [10.0] * 20}},
-        {"load": {"normal_force": [0.0, 10.0]}, "tangential": {"stick_radius": 0.0}},
-        {"tangential": {"tangential_displacement": [-1.0, 1.0, 0.0]}},
-        {"radius": [0.0]},
-        {"radius": [1e-5, 0.0, 1e-5]},
-        {"radius": [1e30]},
-    ],
+    ("path", "change"),
+    [(path, change) for path, case in DEGENERATE.items() for change in case["changes"]],
     ids=str,
 )
-@pytest.mark.parametrize("path", ["/v1/tangential", "/v1/stress"])
-def test_degenerate_contacts_have_a_plot(
+def test_degenerate_request_has_a_plot(
     client: Client, path: str, change: dict[str, object]
 ) -> None:
-    query = {**EXAMPLES["stress"]["cattaneo_mindlin"]["value"], **change}
+    name, example = DEGENERATE[path]["example"]
+    query = EXAMPLES[name][example]["value"] | change
     if path == "/v1/tangential":
         query = {name: query[name] for name in query if name not in {"radius", "quantities"}}
     parse_svg(ask(client, path, query, "image/svg+xml"))
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"normal": {"normal_force": 0.0}, "tangential": {"tangential_force": 0.0}},
-        {"normal": {"indentation_depth": [-1.0, -2.0]}},
-        {"normal": {"normal_force": 0.0}, "tangential": {"tangential_displacement": [1.0, -1.0]}},
-        {"tangential": {"tangential_displacement": [1e-8, 3e-7] * 30}},
-        {"tangential": {"tangential_force": [2.0, -1.0] * 5_000}, "samples_per_step": 2},
-        {"normal": {"normal_force": [10.0, 20.0]}, "samples_per_step": 500},
-    ],
-    ids=["nothing", "gaps", "slip without force", "curves", "many points", "many samples"],
-)
-def test_degenerate_histories_have_a_plot(client: Client, change: dict[str, object]) -> None:
+def test_history_of_many_points_has_a_plot(client: Client) -> None:
     example = EXAMPLES["history"]["residual"]["value"]
-    displaced = {"tangential": {"tangential_displacement": [0.0, 1e-8]}}
-    simple = example["history"] | (displaced if "tangential" not in change else {})
-    parse_svg(
-        ask(
-            client,
-            "/v1/tangential/history",
-            example | {"history": simple | change},
-            "image/svg+xml",
-        )
-    )
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"load": {"normal_force": 0.0}, "oscillation": {"tangential_force": 0.0}},
-        {"load": {"indentation_depth": 1e-6}, "oscillation": {"tangential_displacement": 1.0}},
-        {"oscillation": {"tangential_force": 3.0}},
-        {"load": {"normal_force": [1.0 + i for i in range(20)]}},
-        {"oscillation": {"tangential_force": [0.1 * i for i in range(20)]}},
-        {"profile": {"kind": "flat_punch", "radius": 0.01}},
-        {
-            "profile": {"kind": "tabulated", "r": [0, 1e-4, 1e-2], "f": [0, 1e-7, 1e-3]},
-            "rtol": 1e-3,
-        },
-    ],
-    ids=str,
-)
-def test_degenerate_wear_has_a_plot(client: Client, change: dict[str, object]) -> None:
-    query = {**EXAMPLES["wear"]["amplitudes"]["value"], "oscillation": {"tangential_force": 0.2}}
-    parse_svg(ask(client, "/v1/wear", query | change, "image/svg+xml"))
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"load": {"normal_force": 1e4}},
-        {"cycles": [0.0]},
-        {"cycles": [1e12] * 30, "resolution": 8},
-        {"oscillation": {"tangential_displacement": 2e-7}, "resolution": 8},
-        {"profile": {"kind": "flat_punch", "radius": 0.01}},
-        {"profile": {"kind": "cone", "slope": 0.1}},
-        {"profile": {"kind": "ellipsoid", "radius": 0.01, "height": 0.01}, "resolution": 8},
-    ],
-    ids=str,
-)
-def test_degenerate_wear_evolution_has_a_plot(client: Client, change: dict[str, object]) -> None:
-    query = EXAMPLES["evolution"]["held_forces"]["value"]
-    parse_svg(ask(client, "/v1/wear/evolution", query | change, "image/svg+xml"))
+    forces = {"tangential_force": [2.0, -1.0] * 5_000}
+    many = example["history"] | {"tangential": forces, "samples_per_step": 2}
+    parse_svg(ask(client, "/v1/tangential/history", example | {"history": many}, "image/svg+xml"))
 
 
 def test_problems_are_json_for_any_accept_header(client: Client) -> None:

@@ -5,6 +5,7 @@ import pickle
 import re
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlencode
 
 import numpy as np
@@ -29,172 +30,19 @@ FRICTION = {"friction_coefficient": 0.3}
 REQUEST = {"profile": BALL, "material": MODULI}
 RANGE = {"normal_force_from": 1, "normal_force_to": 10, "n": 50}
 NORMAL = {**BALL, "e_star": 1.15e11, "normal_force": 10}
-SAME = {
-    "a range": (
-        "normal",
-        {**BALL, **MODULI, **RANGE},
-        {**REQUEST, "load": {"normal_force": np.linspace(1, 10, 50).tolist()}},
-    ),
-    "geometric spacing": (
-        "normal",
-        {**BALL, **MODULI, **RANGE, "scale": "log"},
-        {**REQUEST, "load": {"normal_force": np.geomspace(1, 10, 50).tolist()}},
-    ),
-    "decreasing range": (
-        "normal",
-        {**BALL, **MODULI, "indentation_depth_from": 1e-6, "indentation_depth_to": 0, "n": 2},
-        {**REQUEST, "load": {"indentation_depth": [1e-6, 0.0]}},
-    ),
-    "one number, a tolerance and a strength": (
-        "normal",
-        {**BALL, "e_star": 1, "yield_strength": 0.5, "contact_radius": 1e-3, "rtol": 1e-6},
-        {
-            "profile": BALL,
-            "material": {"e_star": 1, "yield_strength": 0.5},
-            "load": {"contact_radius": 1e-3},
-            "rtol": 1e-6,
-        },
-    ),
-    "two bodies": (
-        "normal",
-        {**BALL, **BODIES, "youngs_modulus_2": 5e6, "poissons_ratio_2": 0.5, "normal_force": 1},
-        {
-            "profile": BALL,
-            "material": {"bodies": [STEEL, {"youngs_modulus": 5e6, "poissons_ratio": 0.5}]},
-            "load": {"normal_force": 1},
-        },
-    ),
-    "one body": (
-        "normal",
-        {**BALL, "youngs_modulus_2": 210e9, "poissons_ratio_2": 0.3, "normal_force": 1},
-        {
-            "profile": BALL,
-            "material": {"bodies": ["rigid", STEEL]},
-            "load": {"normal_force": 1},
-        },
-    ),
-    "a tangential range": (
-        "tangential",
-        {
-            **BALL,
-            **MODULI,
-            **FRICTION,
-            "normal_force": 10,
-            "tangential_force_from": -3,
-            "tangential_force_to": 3,
-            "n": 7,
-        },
-        {
-            **REQUEST,
-            **FRICTION,
-            "load": {"normal_force": 10},
-            "tangential": {"tangential_force": np.linspace(-3, 3, 7).tolist()},
-        },
-    ),
-    "stresses at a range of radii": (
-        "stress",
-        {
-            **BALL,
-            **MODULI,
-            **FRICTION,
-            "normal_force": 10,
-            "stick_radius": 5e-5,
-            "r_from": 0,
-            "r_to": 1e-4,
-            "n": 11,
-            "quantities": "pressure,shear_stress,slip",
-        },
-        {
-            **REQUEST,
-            **FRICTION,
-            "load": {"normal_force": 10},
-            "tangential": {"stick_radius": 5e-5},
-            "radius": np.linspace(0, 1e-4, 11).tolist(),
-            "quantities": ["pressure", "shear_stress", "slip"],
-        },
-    ),
-    "stresses at one radius under a range of loads": (
-        "stress",
-        {**BALL, **MODULI, **RANGE, "r": 0, "quantities": "pressure"},
-        {
-            **REQUEST,
-            "load": {"normal_force": np.linspace(1, 10, 50).tolist()},
-            "radius": [0.0],
-            "quantities": ["pressure"],
-        },
-    ),
-    "stresses at points": (
-        "stress",
-        {**BALL, **MODULI, "normal_force": 1, "points": 20, "quantities": "normal_displacement"},
-        {
-            **REQUEST,
-            "load": {"normal_force": 1},
-            "points": 20,
-            "quantities": ["normal_displacement"],
-        },
-    ),
-    "cycles": (
-        "history",
-        {
-            **BALL,
-            **MODULI,
-            **FRICTION,
-            "normal_force": 10,
-            "normal_amplitude": 2,
-            "tangential_force": 1,
-            "count": 2,
-            "samples_per_step": 3,
-        },
-        {
-            **REQUEST,
-            **FRICTION,
-            "cycles": {
-                "normal": {"normal_force": 10, "amplitude": 2},
-                "tangential": {"tangential_force": 1},
-                "count": 2,
-                "samples_per_step": 3,
-            },
-        },
-    ),
-    "wear by the amplitude": (
-        "wear",
-        {
-            **BALL,
-            **MODULI,
-            **FRICTION,
-            "normal_force": 10,
-            "tangential_force_from": 1,
-            "tangential_force_to": 2.5,
-            "n": 4,
-        },
-        {
-            **REQUEST,
-            **FRICTION,
-            "load": {"normal_force": 10},
-            "oscillation": {"tangential_force": np.linspace(1, 2.5, 4).tolist()},
-        },
-    ),
-    "wear over the radius": (
-        "wear",
-        {
-            **BALL,
-            **MODULI,
-            **FRICTION,
-            "indentation_depth": 1e-6,
-            "tangential_displacement": 2e-7,
-            "points": 9,
-            "quantities": "worn_depth,pressure",
-        },
-        {
-            **REQUEST,
-            **FRICTION,
-            "load": {"indentation_depth": 1e-6},
-            "oscillation": {"tangential_displacement": 2e-7},
-            "points": 9,
-            "quantities": ["worn_depth", "pressure"],
-        },
-    ),
-}
+DATA = Path(__file__).parents[1] / "data"
+# Parameters and the equivalent request, in which a list of numbers may be a range.
+SAME = json.loads((DATA / "same_requests.json").read_text("utf-8"))
+
+
+def expanded(value: Any) -> Any:
+    """Return a request with its ranges as lists."""
+    if isinstance(value, dict) and "range" in value:
+        spaced = np.geomspace if value["scale"] == "log" else np.linspace
+        return spaced(*value["range"]).tolist()
+    if isinstance(value, dict):
+        return {name: expanded(each) for name, each in value.items()}
+    return value
 
 
 def at(query: str, parameters: Mapping[str, object] | None = None) -> str:
@@ -207,9 +55,9 @@ def at(query: str, parameters: Mapping[str, object] | None = None) -> str:
 )
 @pytest.mark.parametrize("name", SAME)
 def test_get_returns_the_bytes_of_post(client: Client, name: str, form: str) -> None:
-    query, parameters, request = SAME[name]
+    query, parameters, request = SAME[name].values()
     computed = client.get(at(query, {**parameters, "format": form}))
-    expected = client.post(f"{at(query)}?format={form}", request)
+    expected = client.post(f"{at(query)}?format={form}", expanded(request))
     assert expected.status_code == 200
     assert computed.status_code == expected.status_code
     assert computed.headers["content-type"] == expected.headers["content-type"]
@@ -237,9 +85,7 @@ def test_one_number_as_text_is_the_number_alone(client: Client, name: str) -> No
 
 # By query: parameters, and wrong changes of them, each with the parameter at fault and, for the
 # mistakes of newcomers, what a reader has to be told to continue.
-STORED = json.loads(
-    (Path(__file__).parents[1] / "data" / "wrong_parameters.json").read_text("utf-8")
-)
+STORED = json.loads((DATA / "wrong_parameters.json").read_text("utf-8"))
 REJECTED = [(query, name) for query, cases in STORED.items() for name in cases["wrong"]]
 
 
@@ -354,7 +200,7 @@ TEXTS = (
 )
 QUERY_STRINGS = st.builds(
     lambda right, others: right | others,
-    st.sampled_from([{}, NORMAL, *(parameters for _, parameters, _ in SAME.values())]),
+    st.sampled_from([{}, NORMAL, *(same["parameters"] for same in SAME.values())]),
     st.dictionaries(st.sampled_from([*NAMES, *ENDS, "n", "scale", "format"]), TEXTS, max_size=3),
 )
 
