@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from typing import Annotated, Any, ClassVar, Final, Literal
 
 import numpy as np
@@ -33,10 +34,10 @@ _WHOLE: Final = re.compile(r"\d{1,9}", re.ASCII)
 _SPACINGS: Final[Mapping[str, Any]] = {"linear": np.linspace, "log": np.geomspace}
 
 
-def _number(text: str) -> float:
+def _number(text: str, advice: str = "") -> float:
     # The framework reads a plus sign in a URL as a space.
     if not _NUMBER.fullmatch(text := text.replace(" ", "+")):
-        raise PydanticCustomError("number", f"{NUMBER}, without a unit or a decimal comma")
+        raise PydanticCustomError("number", f"{NUMBER}, without a unit or a decimal comma{advice}")
     if np.isinf(value := float(text)):
         raise PydanticCustomError("number", FINITE)
     return value
@@ -50,6 +51,9 @@ def _whole(text: str) -> int:
 
 # A schema that admits null keeps Swagger UI from checking the text, since it takes no exponents.
 _Number = Annotated[float, BeforeValidator(_number)] | None
+# Of a parameter that can be a range.
+_SEVERAL: Final = "; give several as a range, by _from, _to and n, or as a list in JSON"
+_Load = Annotated[float, BeforeValidator(partial(_number, advice=_SEVERAL))] | None
 _Whole = Annotated[int, BeforeValidator(_whole)] | None
 _Length = Annotated[int, Field(ge=2, le=SETTINGS.max_length), BeforeValidator(_whole)] | None
 # By the type of the field in JSON.
@@ -197,7 +201,7 @@ def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str
             text = f"Fields, separated by commas: {', '.join(leaf['items']['enum'])}"
             yield name, field, str | None, text
         elif field == "radius" or group in loads & _LOADS:
-            yield name, field, _Number, text
+            yield name, field, _Load, text
             for end, which in (("from", "First"), ("to", "Last")):
                 meaning = f"{which} of `n` values of `{name}` {dimension}"
                 yield f"{name}_{end}", field, _Number, meaning

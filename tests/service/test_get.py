@@ -114,6 +114,16 @@ def test_unknown_format_is_not_acceptable(client: Client) -> None:
     assert (answer.status_code, answer.json()["type"]) == (406, "urn:mdr:problem:not-acceptable")
 
 
+@pytest.mark.parametrize("loads", ["1,10", "1:10", "1;10"])
+def test_list_of_loads_is_told_how_to_give_a_range(client: Client, loads: str) -> None:
+    response = client.get(at("normal", {**NORMAL, "normal_force": loads}))
+    advice = "; give several as a range, by _from, _to and n, or as a list in JSON"
+    assert response.json()["detail"].endswith(advice)
+    # Of a radius of the profile there is one.
+    response = client.get(at("normal", {**NORMAL, "radius": loads}))
+    assert response.json()["detail"].endswith("a decimal comma")
+
+
 def test_repeated_parameter_is_rejected(client: Client) -> None:
     response = client.get(at("normal", NORMAL) + "&radius=0.01")
     assert response.json()["errors"] == [
