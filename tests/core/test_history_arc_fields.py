@@ -1,4 +1,4 @@
-"""Fields after nonlinear load paths under mixed control: closed forms and balances."""
+"""Fields at the end of a history would not balance its force, or not be those of its foundation."""
 
 import itertools
 from functools import partial
@@ -45,10 +45,15 @@ PROFILES = (
 )
 FORCES = np.array([1.0, 1.0, 1.3, 1.1, 1.6, 1.5])
 CONTROLS = ("normal_force", "indentation_depth")
+PATHS = pytest.mark.parametrize("control", ["forces", *CONTROLS])
+CYCLE = {"normal_force": [1.0, 1.0, 1.5, 0.8], "tangential_force": [0.0, 0.3, -0.2, 0.1]}
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(60)
 
 
 def load_history_end(profile: Profile, control: str) -> LoadHistory:
+    """A cycle of forces, or a path of arcs under mixed control."""
+    if control == "forces":
+        return history.solve(profile, E, G, MU, **CYCLE)
     depth = normal.solve(profile, E, normal_force=FORCES).indentation_depth
     if control == "normal_force":
         moved = np.array([0.0, 0.0, 0.2, 0.1, 0.3, 0.25]) * MU * E / G * depth[0]
@@ -133,7 +138,7 @@ def test_foundation_and_slip_of_one_arc_on_a_paraboloid(control: str) -> None:
     np.testing.assert_allclose(fields.slip(way.state, r), slips, rtol=1e-10, atol=1e-13 * scale)
 
 
-@pytest.mark.parametrize("control", CONTROLS)
+@PATHS
 @pytest.mark.parametrize("profile", PROFILES, ids=lambda profile: profile.kind)
 def test_stress_and_foundation_balance_the_tangential_force(profile: Profile, control: str) -> None:
     way = load_history_end(profile, control)
@@ -152,7 +157,7 @@ def test_stress_and_foundation_balance_the_tangential_force(profile: Profile, co
     assert way.error_estimate < 2e-5
 
 
-@pytest.mark.parametrize("control", CONTROLS)
+@PATHS
 @pytest.mark.parametrize("profile", PROFILES, ids=lambda profile: profile.kind)
 def test_slip_is_the_transform_of_the_foundation_slip(profile: Profile, control: str) -> None:
     # Eq. (5.40): s = (2/pi) int_0^r s_1D/sqrt(r^2 - x^2) dx, s_1D = q_x/G* minus its value on the
