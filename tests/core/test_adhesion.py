@@ -83,63 +83,6 @@ def test_flat_punch_pulls_off_as_kendall(units: tuple[float, float, float]) -> N
     assert close(contact.elastic_energy, e_star * radius * contact.indentation_depth**2)
 
 
-@pytest.mark.parametrize("units", UNITS[:3])
-def test_cone_pulls_off_at_its_closed_form(units: tuple[float, float, float]) -> None:
-    _, e_star, w = units
-    t, place = 0.3, w / (np.pi * e_star)
-    force = -54 * w * w / (np.pi * e_star * t**3)
-    contact = adhesion.solve(mdr.Cone(t), e_star, w, normal_force=force)
-    assert close(contact.contact_radius, 18 * place / t**2)
-    assert close(contact.pull_off_force, force)
-    contact = adhesion.solve(mdr.Cone(t), e_star, w, contact_radius=2 * place / t**2)
-    assert close(contact.indentation_depth, contact.pull_off_depth)
-
-
-@pytest.mark.parametrize("n", [1.5, 2.0, 2.5, 3.0, 4.0, 6.0])
-def test_power_pulls_off_at_its_closed_form(n: float) -> None:
-    factor, e_star, w = mpf("0.7"), mpf(3), mpf("0.02")
-    kappa = mp.sqrt(mp.pi) * mp.gamma(n / 2 + 1) / mp.gamma((mpf(n) + 1) / 2) * factor
-    a = (3 / (2 * n * kappa) * mp.sqrt(2 * mp.pi * w / e_star)) ** (1 / (mpf(n) - 0.5))
-    force = 2 * n / (mpf(n) + 1) * e_star * kappa * a ** (n + 1)
-    force -= 2 * mp.sqrt(2 * mp.pi * e_star * w) * a**1.5
-    least = adhesion.solve(mdr.Power(0.7, n), 3.0, 0.02, normal_force=0.0).pull_off_force
-    assert close(least, float(force))
-    contact = adhesion.solve(mdr.Power(0.7, n), 3.0, 0.02, normal_force=least)
-    assert close(contact.contact_radius, float(a))
-
-
-@pytest.mark.parametrize("w", [1e-9, 1e-3, 0.05, 0.3])
-def test_sphere_is_that_of_maugis(w: float) -> None:
-    """Maugis 1995 gives depth and force over the contact radius, with a logarithm."""
-    with mp.workdps(40):
-        radius, e_star = mpf(1), mpf(1)
-
-        def state(a: mpf) -> tuple[mpf, mpf]:
-            log = mp.log((radius + a) / (radius - a))
-            depth = a / 2 * log - mp.sqrt(2 * mp.pi * a * w / e_star)
-            force = 2 * e_star * ((radius**2 + a**2) / 4 * log - a * radius / 2)
-            return depth, force - mp.sqrt(8 * mp.pi * a**3 * w * e_star)
-
-        def slope(a: mpf) -> mpf:
-            return mp.diff(lambda x: state(x)[1], a)
-
-        guess = mp.cbrt(9 * mp.pi * mpf(w) / 8)
-        edge = mp.findroot(slope, (min(guess / 2, mpf("0.5")), mpf("0.999")), solver="anderson")
-        pull_off = state(edge)[1]
-        samples = [edge + (1 - edge) * mpf(k) / 10 for k in (1, 3, 6, 9)]
-        expected = [[float(part) for part in state(a)] for a in samples]
-    assert close(
-        adhesion.solve(mdr.Sphere(1.0), 1.0, w, normal_force=0.0).pull_off_force, float(pull_off)
-    )
-    for a, (depth, force) in zip(samples, expected, strict=True):
-        contact = adhesion.solve(mdr.Sphere(1.0), 1.0, w, contact_radius=float(a))
-        size = contact.retraction
-        assert abs(contact.indentation_depth - depth) <= CLOSED * size
-        assert abs(contact.normal_force - force) <= CLOSED * size * 2 * float(a)
-        contact = adhesion.solve(mdr.Sphere(1.0), 1.0, w, normal_force=force)
-        assert abs(contact.contact_radius / float(a) - 1) <= max(CLOSED, contact.error_estimate)
-
-
 @pytest.mark.parametrize("profile", EACH_KIND, ids=lambda profile: profile.kind)
 @pytest.mark.parametrize("radius", [0.7, 1.1])
 def test_energy_release_rate_is_the_work_of_adhesion(profile: Profile, radius: float) -> None:
@@ -468,41 +411,6 @@ def test_edge_error_grows_towards_the_edge() -> None:
 
 
 # What is rejected.
-
-
-@pytest.mark.parametrize(
-    ("profile", "given", "path", "said"),
-    [
-        (mdr.Paraboloid(1.0), {"normal_force": -1.0}, "load.normal_force", "-0.0942477"),
-        (mdr.Paraboloid(1.0), {"normal_force": [0.0, -1.0]}, "load.normal_force.1", "-0.0942477"),
-        (mdr.Paraboloid(1.0), {"indentation_depth": -1.0}, "load.indentation_depth", "-0.118535"),
-        (mdr.FlatPunch(1.0), {"normal_force": -1.0}, "load.normal_force", "-0.70898"),
-        (mdr.Paraboloid(1.0), {"contact_radius": 0.1}, "load.contact_radius", "0.198775"),
-        (mdr.Paraboloid(1.0), {"contact_radius": -0.1}, "load.contact_radius", "positive"),
-        (mdr.Paraboloid(1.0), {"normal_force": float("nan")}, "load.normal_force", "finite"),
-        (mdr.Paraboloid(1.0), {"normal_force": []}, "load.normal_force", "at least one"),
-        (mdr.Power(1.0, 0.4), {"normal_force": 0.0}, "material.work_of_adhesion", "without bound"),
-        (
-            mdr.Tabulated([0, 0.05, 0.1, 0.15], [0, 0.00125, 0.005, 0.01125]),
-            {"normal_force": 0.0},
-            "material.work_of_adhesion",
-            "radius 0.15, where the profile ends",
-        ),
-        (
-            mdr.Tabulated([0, 0.5, 1.0, 1.5], [0, 0.125, 0.5, 1.125]),
-            {"normal_force": 100.0},
-            "load.normal_force",
-            "beyond radius 1.5",
-        ),
-    ],
-)
-def test_loads_without_a_state_are_rejected(
-    profile: Profile, given: dict[str, Any], path: str, said: str
-) -> None:
-    with pytest.raises(mdr.InputError) as caught:
-        adhesion.solve(profile, 1.0, 0.02, **given)
-    assert ".".join(map(str, caught.value.path)) == path
-    assert said in caught.value.detail
 
 
 @pytest.mark.parametrize("reach", [1e-3, 0.05])

@@ -245,32 +245,6 @@ def test_change_of_units(unit: float) -> None:
     assert other.standard_errors == pytest.approx(found.standard_errors * scale, rel=1e-6, abs=0)
 
 
-GOOD: dict[str, Any] = {"indentation_depth": [0.0, 1e-3, 2e-3, 4e-3, 6e-3, 8e-3],
-                        "normal_force": [0.0, 1e-4, 2e-4, 5e-4, 8e-4, 1e-3]}  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("changed", "path", "words"),
-    [
-        ({"normal_force": [1.0]}, ("normal_force",), "1 values for 6 depths"),
-        ({"indentation_depth": [1e-3] * 6}, ("indentation_depth",), "different depths"),
-        ({"indentation_depth": [0, 1, 2, np.nan, 3, 4]}, ("indentation_depth", 3), "finite"),
-        ({"fit": []}, ("fit",), "must hold some of"),
-        ({"fit": ["modulus"]}, ("fit",), "must hold some of"),
-        ({"fit": ["contact_point"]}, ("e_star",), "needed"),
-        ({"e_star": 1.0}, ("e_star",), "leave it out"),
-        ({"noise": 0.0}, ("noise",), "positive"),
-        ({"normal_force": [0.0, -1, -2, -5, -8, -10]}, ("normal_force",), "reverse its sign"),
-    ],
-)
-def test_errors_name_the_input(
-    changed: dict[str, Any], path: tuple[str | int, ...], words: str
-) -> None:
-    with pytest.raises(mdr.InputError, match=words) as error:
-        fit.solve(mdr.Paraboloid(1.0), **(GOOD | changed))
-    assert error.value.path == path
-
-
 def test_separation_in_place_of_depth_is_refused() -> None:
     for profile in SHAPES.values():
         for curve in (forces(profile), forces(profile) + 1.0, adhesive(mdr.Paraboloid(1.0), DEPTH)):

@@ -176,24 +176,6 @@ def test_one_impact_of_several_is_the_same_alone() -> None:
         assert alone.duration == several.duration[i]
 
 
-@pytest.mark.parametrize(
-    ("profile", "given", "path", "words"),
-    [
-        (mdr.Cone(0.3), {"v": -1.0}, ("normal_velocity",), "positive"),
-        (mdr.Cone(0.3), {"w": [0.0, math.inf]}, ("tangential_velocity", 1), "finite"),
-        (mdr.Cone(0.3), {"normal_mass": 0.0}, ("normal_mass",), "positive"),
-        (mdr.Sphere(1.0), {"v": [0.1, 100.0]}, ("normal_velocity", 1), "reduce the velocity"),
-    ],
-)
-def test_errors_name_the_input(
-    profile: Profile, given: dict[str, Any], path: tuple[str | int, ...], words: str
-) -> None:
-    given = {"v": 0.1, "w": 0.0} | given
-    with pytest.raises(mdr.InputError, match=words) as error:
-        solved(profile, **given)
-    assert error.value.path == path
-
-
 def test_rapid_oscillations_are_refused() -> None:
     with pytest.raises(mdr.AccuracyError, match="oscillates"):
         solved(mdr.Cone(0.3), 0.1, 0.01, tangential_mass=1e-4)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from math import asin, pi, sqrt
+from math import pi, sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -161,47 +161,6 @@ def test_pressure_integrates_to_the_force(case: tuple[dict[str, Any], float]) ->
     b = break_radius(fields_)
     knots = [0.0, b, radius] if 0 < b < radius else [0.0, radius]
     assert integral(ring, knots) == pytest.approx(float(contact.normal_force), rel=1e-8, abs=0)
-
-
-@repeatable
-@given(cases())
-def test_inverse_transform_returns_the_shape(case: tuple[dict[str, Any], float]) -> None:
-    fields_, radius = case
-    profile = profile_from(fields_)
-    b = break_radius(fields_)
-    knots = [0.0, asin(b / radius), pi / 2] if 0 < b < radius else [0.0, pi / 2]
-    back = 2 / pi * integral(lambda angle: profile.g(radius * np.sin(angle)), knots)
-    assert back == pytest.approx(float(profile.f(np.array([radius]))[0]), rel=1e-9, abs=1e-300)
-
-
-@repeatable
-@given(cases())
-def test_shape_and_equivalent_profile_match_their_slopes(
-    case: tuple[dict[str, Any], float],
-) -> None:
-    fields_, radius = case
-    profile = profile_from(fields_)
-    b = break_radius(fields_)
-    start = radius / 7
-    knots = [start, b, radius] if start < b < radius else [start, radius]
-    for value, rate in ((profile.f, profile.df), (profile.g, profile.dg)):
-        rise = float(np.diff(value(np.array([start, radius])))[0])
-        # Where g' has a root in its denominator, the rounding error of nodes next to it dominates.
-        assert integral(rate, knots) == pytest.approx(rise, rel=1e-7, abs=1e-300)
-
-
-@repeatable
-@given(cases())
-def test_each_result_as_load_reproduces_the_others(case: tuple[dict[str, Any], float]) -> None:
-    fields_, radius = case
-    first = at_radius(fields_, radius)
-    profile = profile_from(fields_)
-    for name in LOADS:
-        again = solve(profile, E_STAR, **{name: getattr(first, name)}, rtol=1e-12)
-        for other in LOADS:
-            expected = float(getattr(first, other))
-            # The largest power is that of a ninth-degree profile.
-            assert float(getattr(again, other)) == pytest.approx(expected, rel=2e-13, abs=0)
 
 
 def rescaled(fields_: dict[str, Any], unit: float) -> dict[str, Any]:

@@ -61,67 +61,6 @@ def test_loads_below_the_pull_off_are_rejected_with_it(client: Client, control: 
     assert list(found) == [f"/load/{control}"]
 
 
-def test_negative_loads_without_adhesion_are_rejected(client: Client) -> None:
-    found = problems(
-        client, "normal", {"load": {"normal_force": -1.0}, "material": {"e_star": 1.0}}
-    )
-    assert found == {"/load/normal_force": "must not be negative: compression is positive"}
-
-
-@pytest.mark.parametrize(
-    ("path", "query"),
-    [
-        ("tangential", LOADED | FRICTION | {"tangential": {"tangential_force": 0.0}}),
-        ("stress", LOADED | FRICTION | {"tangential": {"tangential_force": 0.0}, "points": 20}),
-        (
-            "tangential/history",
-            FRICTION
-            | {
-                "history": {
-                    "normal": {"normal_force": 1e-6},
-                    "tangential": {"tangential_force": [0]},
-                }
-            },
-        ),
-        ("wear", LOADED | FRICTION | {"oscillation": {"tangential_force": 0.0}}),
-        (
-            "wear/evolution",
-            LOADED
-            | FRICTION
-            | {
-                "oscillation": {"tangential_force": 1.0},
-                "wear_coefficient": 1.0,
-                "cycles": [1],
-                "points": 9,
-            },
-        ),
-    ],
-)
-def test_friction_and_wear_are_rejected(client: Client, path: str, query: dict[str, Any]) -> None:
-    if path == "stress":
-        query = query | {"quantities": ["pressure"]}
-    found = problems(client, path, query)
-    assert "is not exact: the tension at the edge" in found["/material/work_of_adhesion"]
-
-
-def test_fits_reject_adhesion(client: Client) -> None:
-    curve = {
-        "indentation_depth": [1e-7, 2e-7, 3e-7, 4e-7],
-        "normal_force": [1e-8, 3e-8, 6e-8, 9e-8],
-    }
-    found = problems(client, "normal/fit", curve | {"fit": ["contact_point"]})
-    assert "without adhesion" in found["/material/work_of_adhesion"]
-
-
-def test_yield_and_peaks_are_rejected(client: Client) -> None:
-    material = BALL["material"] | {"yield_strength": 1e6, "poissons_ratio": 0.5}
-    found = problems(client, "normal", LOADED | {"material": material})
-    assert "is not exact" in found["/material/yield_strength"]
-    del material["yield_strength"]
-    query = LOADED | {"material": material, "points": 4, "largest": True}
-    assert "is not exact" in problems(client, "subsurface", query)["/largest"]
-
-
 def test_range_needs_a_work_and_warns(client: Client) -> None:
     alone = {"e_star": E_STAR, "range_of_adhesion": 1e-9}
     assert "/material/work_of_adhesion" in problems(client, "normal", LOADED | {"material": alone})

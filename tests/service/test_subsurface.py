@@ -47,28 +47,6 @@ def pointers(client: Client, query: dict[str, Any]) -> list[str]:
     return [error["pointer"] for error in response.json()["errors"]]
 
 
-def test_hertz_on_the_axis(client: Client) -> None:
-    """Johnson, Eqs. (3.45), (4.10): stresses on the axis, their maximum, and the onset of yield."""
-    result = result_of(client, AXIS)
-    modulus = 210e9 / (2 * (1 - 0.3**2))
-    a = (0.75 * 10.0 * 0.01 / modulus) ** (1 / 3)
-    peak = 1.5 * 10.0 / (np.pi * a * a)
-    s = np.array(AXIS["z"]) / a
-    vertical = -peak / (1 + s * s)
-    radial = -peak * (1.3 * (1 - s * np.arctan2(1, s)) - 0.5 / (1 + s * s))
-    assert np.ravel(result["stress_zz"]) == pytest.approx(vertical, rel=1e-10, abs=0)
-    assert np.ravel(result["stress_xx"]) == pytest.approx(radial, rel=0, abs=1e-10 * peak)
-    difference = np.abs(vertical - radial)
-    assert np.ravel(result["von_mises"]) == pytest.approx(difference, rel=0, abs=1e-10 * peak)
-    largest = result["largest"]["maximum_shear"]
-    assert largest["value"][0] / peak == pytest.approx(0.310, abs=5e-4)
-    assert largest["z"][0] / a == pytest.approx(0.481, abs=1e-3)
-    # p_0 = 1.613 Y, and F_N grows with the cube of p_0.
-    for force in result["yield_onset_force"].values():
-        onset = peak * (force[0] / 10.0) ** (1 / 3)
-        assert onset / 1e9 == pytest.approx(1.613, abs=1e-3)
-
-
 @pytest.mark.parametrize("factor", [0.99, 1.01])
 def test_yield_warning_starts_at_the_onset(client: Client, factor: float) -> None:
     onset = result_of(client, AXIS)["yield_onset_force"]["tresca"][0]
