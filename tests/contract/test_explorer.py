@@ -357,6 +357,15 @@ def test_largest_stress_at_the_surface_is_that_of_full_slip(visit: Visit, case: 
     assert float(shown) == pytest.approx(expected, rel=1e-4, abs=0)
 
 
+def test_stresses_beneath_a_singular_edge_keep_their_colours(visit: Visit) -> None:
+    """All but a fiftieth of the points are below the colour of the largest."""
+    visit.open("?tab=stress&kind=flat_punch&radius=0.02&e1=rigid&e2=5e6&nu2=0.5&load=500&body=2")
+    chart = visit.page.locator("figure", has_text="Von Mises stress").locator(".plot")
+    below = "({ data: [{ z, zmax }] }) => z.flat().filter((x) => x < zmax && x > zmax / 20).length"
+    many = chart.evaluate("plot => plot.data[0].z.flat().length")
+    assert chart.evaluate(below) > 0.9 * many
+
+
 def test_narrow_worn_annulus_fills_its_chart(visit: Visit) -> None:
     """After these cycles, not in the limit, from which the annulus of Eq. (5.90) differs."""
     amplitude = "&mu=0.6&oscillation=tangential_displacement&amplitude=1e-8"

@@ -34,14 +34,24 @@ function curve(trace, spec, inputs, colours) {
   };
 }
 
+/** Return the levels of a map of stresses, up to half as much again as all but a fiftieth of them. */
+function levels(z) {
+  const sizes = z.flat().filter((value) => value !== null).sort((a, b) => a - b);
+  const most = 1.5 * sizes[Math.floor(0.98 * (sizes.length - 1))];
+  // Next to a singular edge few points would leave a single colour for the others.
+  if (!(sizes.at(-1) > most && most > 0)) return { ncontours: 24 };
+  return { zauto: false, zmin: 0, zmax: most, autocontour: false, contours: { start: 0, end: most, size: most / 20 } };
+}
+
 function contours(trace, spec, inputs, colours) {
+  const z = trace.z.map((row) => scaled(row, spec.z[1], inputs));
   return {
     type: "contour",
     x: scaled(trace.x, spec.x[1], inputs),
     y: scaled(trace.y, spec.y[1], inputs),
-    z: trace.z.map((row) => scaled(row, spec.z[1], inputs)),
+    z,
     colorscale: "Viridis",
-    ncontours: 24,
+    ...levels(z),
     line: { width: 0.4 },
     colorbar: { title: { text: withUnit(spec.z, inputs), side: "right" }, tickfont: { color: colours.ink } },
     hovertemplate: "x %{x:.4~g}, z %{y:.4~g}: %{z:.4~g}<extra></extra>",
