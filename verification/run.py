@@ -36,7 +36,7 @@ _NOTES: Final = (
     (
         "`model_error` is an estimate: its deviation is the factor between it and the error to the "
         "fuller model of the source, less one. The bound of a force with transverse slip is the "
-        "estimate, (ν/(4 − 2ν))²."
+        "estimate, 0.2 (ν/(4 − 2ν))²."
     ),
     (
         "The tables of Buie's pair no. 1 converge slowly, with the root of the spacing: the "

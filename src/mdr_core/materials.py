@@ -43,7 +43,8 @@ class Material:
     profile_share: float | None = None
     """Share of the first body, which has the profile, in 1/E* [1]; None where it is unknown."""
     body_thickness: float | None = None
-    """Thickness of the more compliant body on a rigid base [length]; None for a half-space."""
+    """Thickness of the more compliant body on a rigid base [length]; None for a half-space or, of a
+    `Sphere`, a ball."""
 
     def __post_init__(self) -> None:
         for name in ("e_star", "g_star", "body_thickness"):
@@ -100,6 +101,7 @@ def from_bodies(
     bodies : two of `Body` or "rigid", at least one of them elastic; the first has the profile.
     body_thickness : thickness of the more compliant body, bonded to a rigid base [length]. The
         contact remains that of half-spaces: `model_error` and the warning `thin_body` count it.
+        Without it a `Sphere` counts as a ball of the thickness 2R, other profiles as half-spaces.
 
     Raises
     ------

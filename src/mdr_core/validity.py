@@ -15,7 +15,7 @@ import numpy as np
 from mdr_core.elementwise import every, full, number, some, where
 from mdr_core.errors import Notice, Remedy
 from mdr_core.materials import Material
-from mdr_core.profiles import Profile, Tabulated
+from mdr_core.profiles import Profile, Sphere, Tabulated
 from mdr_core.results import Results
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes
@@ -34,6 +34,9 @@ _ASSUMED_BETA: Final = (1 - 2 * ASSUMED_RATIO) / (2 * (1 - ASSUMED_RATIO))
 _WALL: Final = 3.0
 # Contact radius over the thickness of a body from which it is reported, with room for rounding.
 _THIN: Final = 0.1 * (1 + 1e-9)
+# Relative change of forces at a given displacement by transverse slip, and of displacements under
+# forces up to 0.998 of full slip, over (nu/(4 - 2 nu))^2. Source: notes, §8.
+_TRANSVERSE: Final = 0.2
 # Radii that a warning lists, so that it stays one sentence.
 _LISTED: Final = 5
 # Poisson's ratio of incompressible bodies.
@@ -133,19 +136,18 @@ def model_error(contact: SolvedContact, material: Material | None) -> Array:
     (`half_space`, `thin_body`), and with friction of the neglected coupling and of the transverse
     slip. A flat punch that sticks to a half-space has artanh(beta)/beta - 1, about beta^2/3, more
     force; slip across the load, of the relative size nu/(4 - 2 nu), acts to second order. Local
-    stresses may differ by beta.
+    stresses may differ by beta, and displacements under a force next to full slip by more.
 
     Source: hay; spence; notes, §8.
 
     Parameters: see `findings`.
     """
     *_, error = _half_space(contact.normal, material)
-    if material is not None and material.body_thickness is not None:
-        error = error + _layer(contact.normal, material)[1]
+    error = error + _layer(contact.normal, material)[1]
     if contact.g_star is not None:
         beta = 0.0 if material is None else material.dundurs_beta or 0.0
         ratio = _largest_ratio(material)
-        error = error + beta**2 / 3 + (ratio / (4 - 2 * ratio)) ** 2
+        error = error + beta**2 / 3 + _TRANSVERSE * (ratio / (4 - 2 * ratio)) ** 2
     return np.minimum(error, 1.0)
 
 
@@ -205,8 +207,8 @@ def of_normal_contact(
     `half_space`: the estimated error of the half-space approximation exceeds one per cent. It is
     of first order in the slope by the neglected radial displacement, and of second order by the
     geometry; the side wall of an elastic punch adds to it. `thin_body`: the contact radius exceeds
-    a tenth of the thickness. `plastic`: the deviatoric stress is infinite somewhere, which no
-    material can bear.
+    a tenth of the thickness of the body, or of a ball. `plastic`: the deviatoric stress is infinite
+    somewhere, which no material can bear.
 
     `slips_from` is the least radius with slip in each case [length].
 
@@ -245,25 +247,25 @@ def of_normal_contact(
     exceeds = error > _HALF_SPACE_ERROR
     steep = Finding("half_space", exceeds, message, error, 0.01, "finite_elements")
     plastic = Finding("plastic", _infinite(contact, yields), places, instead="rounded_tip")
-    if material is None or material.body_thickness is None:
-        return [steep, plastic]
     return [steep, _thin_body(contact, material), plastic]
 
 
-def _thin_body(contact: LoadedContact, material: Material) -> Finding:
+def _thin_body(contact: LoadedContact, material: Material | None) -> Finding:
     part, error = _layer(contact, material)
+    is_given = material is not None and material.body_thickness is not None
+    over = "thickness" if is_given else "diameter of the ball, over its share in the compliance"
 
     def message() -> str:
-        size = _per_cent(extremes(error)[1])
         return (
-            f"the contact radius is {extremes(part)[1]:.3g} times the thickness of the body, which "
-            f"is stiffer than a half-space by {size}; use a smaller load, or finite elements"
+            f"the contact radius is {extremes(part)[1]:.3g} times the {over}: the body is stiffer "
+            f"than a half-space by {_per_cent(extremes(error)[1])}; use a smaller load, or finite "
+            "elements"
         )
 
     return Finding("thin_body", part > _THIN, message, part, 0.1, "finite_elements")
 
 
-def _layer(contact: LoadedContact, material: Material) -> tuple[Array, Array]:
+def _layer(contact: LoadedContact, material: Material | None) -> tuple[Array, Array]:
     """a/h of a body of thickness h, bonded to a rigid base, and its relative error by the base [1].
 
     The base reduces the depth by alpha F_N/(pi E* h), to first order in a/h, with the source's
@@ -271,10 +273,20 @@ def _layer(contact: LoadedContact, material: Material) -> tuple[Array, Array]:
 
     Source: dimitriadis; notes, §8.
     """
-    part = contact.contact_radius / (material.body_thickness or np.inf)
+    part = contact.contact_radius / _thickness(contact.profile, material)
     nu = _largest_ratio(material)
     x = 2 / np.pi * (1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu) * part
     return part, x + x * x
+
+
+def _thickness(profile: Profile, material: Material | None) -> Parameter:
+    """As given; of a ball 2R, where the other body is rigid, and more by its share if it is not."""
+    if material is not None and material.body_thickness is not None:
+        return material.body_thickness
+    share = None if material is None else material.profile_share
+    if not isinstance(profile, Sphere) or share == 0:
+        return np.inf
+    return 2 * profile.radius / (share or 1.0)
 
 
 def _largest_ratio(material: Material | None) -> float:

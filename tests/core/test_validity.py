@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from verification import compressed_ball, transverse_slip
 
 from mdr_core import adhesion, normal, tangential, validity
 from mdr_core.materials import RIGID, Body, Material, from_bodies
@@ -142,7 +143,7 @@ def test_model_error_of_coupling_is_that_of_a_bonded_punch(nu: float) -> None:
     punch = normal.solve(FlatPunch(1.0), pair, normal_force=1.0)
     stuck = tangential.solve(punch, pair.g_star, 1e3, tangential_force=0.0)
     error = (1 - nu) * np.log(3 - 4 * nu) / (1 - 2 * nu) - 1
-    across = (nu / (4 - 2 * nu)) ** 2
+    across = 0.2 * (nu / (4 - 2 * nu)) ** 2
     assert punch.model_error == 0
     assert within_a_factor_of_three(validity.model_error(stuck, pair) - across, error)
 
@@ -166,13 +167,49 @@ def test_model_error_of_a_layer_on_a_rigid_base() -> None:
     assert "thin_body" in {notice.code for notice in punch.warnings}
 
 
-def test_model_error_of_transverse_slip() -> None:
-    """Full solutions of partial slip differ by 0.1 to 0.8 per cent at nu = 0.3, by none at 0."""
-    for nu, low, high in ((0.3, 0.001, 0.008), (0.0, 0.0, 1e-10)):
-        pair = bodies(nu, nu)
-        ball = normal.solve(Paraboloid(1.0), pair, contact_radius=1e-6)
-        partial = tangential.solve(ball, pair.g_star, 0.3, tangential_force=0.0)
-        assert low <= validity.model_error(partial, pair) <= high
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+def test_model_error_of_transverse_slip(nu: float) -> None:
+    """It is not understated at any stick radius, nor thrice the largest change of the force."""
+    pair = bodies(nu, nu)
+    ball = normal.solve(Paraboloid(1.0), pair, contact_radius=1e-6)
+    partial = tangential.solve(ball, pair.g_star, 0.3, tangential_force=0.0)
+    sticks = (0.01, 0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)
+    largest = max(abs(transverse_slip.force_ratio(nu, stick) - 1) for stick in sticks)
+    assert largest <= partial.model_error <= 3 * largest + 1e-10
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.45, 0.49])
+@pytest.mark.parametrize("cap", [0.02, 0.05, 0.1, 0.2, 0.4])
+def test_model_error_of_a_ball_between_plates_is_not_understated(nu: float, cap: float) -> None:
+    """Factor of three, but where two errors of a ball of nu = 0 nearly cancel."""
+    depth, ratio = compressed_ball.force_ratio(nu, cap)
+    elastic = [Body(1.0, nu), RIGID]
+    for profile, pair in (
+        (Sphere(1.0), from_bodies(elastic)),
+        (Sphere(1.0), from_bodies(elastic, body_thickness=2.0)),
+        (Paraboloid(1.0), from_bodies(elastic, body_thickness=2.0)),
+    ):
+        contact = normal.solve(profile, pair, indentation_depth=depth)
+        assert contact.model_error >= abs(ratio - 1)
+        assert contact.model_error <= 3 * abs(ratio - 1) or (nu == 0 and cap < 0.2)
+        assert ("thin_body" in codes(contact)) == (cap == 0.4)
+
+
+def test_sphere_counts_as_a_ball_by_its_share_in_the_compliance() -> None:
+    soft = Body(1.0, 0.3)
+
+    def error(pair: Material | float, profile: normal.Profile) -> float:
+        return float(normal.solve(profile, pair, contact_radius=0.05).model_error)
+
+    ball, flat = Sphere(1.0), Paraboloid(1.0)
+    rigid = from_bodies([RIGID, soft])
+    assert error(rigid, ball) == pytest.approx(error(rigid, flat), rel=5e-3, abs=0)
+    # Unknown bodies: the ball may be the elastic one.
+    alone = from_bodies([soft, RIGID])
+    assert error(1.0, ball) == error(alone, ball) > 2.5 * error(alone, flat)
+    # Equal balls of the radius 2 have this effective radius, and the thickness 4.
+    equal, thick = from_bodies([soft, soft]), from_bodies([soft, soft], body_thickness=4.0)
+    assert error(equal, ball) == error(thick, ball)
 
 
 def test_warnings_name_their_size_limit_and_remedy() -> None:
@@ -218,7 +255,7 @@ def test_steep_slopes_exceed_the_half_space_limit(material: Material, slope: flo
 
 def test_contact_without_material_assumes_the_worst_case() -> None:
     steep = normal.solve(Sphere(1.0), 1.0, contact_radius=0.6)
-    assert codes(steep) == ["half_space"]
+    assert codes(steep) == ["half_space", "thin_body"]
     assert "0.3 assumed" in steep.warnings[0].message
     assert codes(normal.solve(FlatPunch(1.0), 1.0, normal_force=1.0)) == ["plastic", "singular"]
 

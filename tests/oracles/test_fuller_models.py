@@ -28,3 +28,15 @@ def test_without_transverse_slip_the_force_is_that_of_cattaneo(stick: float) -> 
     force = transverse_slip._force(transverse_slip._kernels(0.0), shift) * area
     assert force == pytest.approx(2 * np.pi / 3 * (1 - stick**3), rel=2e-3, abs=0)
     assert transverse_slip.force_ratio(0.0, stick) == 1
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.5])
+@pytest.mark.parametrize("stick", [0.15, 0.2, 0.35, 0.5, 0.8])
+def test_displacement_under_a_force_changes_by_less_than_its_estimate(
+    nu: float, stick: float
+) -> None:
+    shift, part = np.pi / 2 * (1 - stick**2), 0.2 * (nu / (4 - 2 * nu)) ** 2
+    without = transverse_slip._force(transverse_slip._kernels(0.0), shift)
+    kernels = transverse_slip._kernels(nu)
+    low, high = (transverse_slip._force(kernels, shift * (1 + sign * part)) for sign in (-1, 1))
+    assert low < without < high

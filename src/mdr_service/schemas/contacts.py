@@ -115,7 +115,8 @@ def thickness() -> Any:
     return positive(
         "length",
         "Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the "
-        "warning `thin_body`; the contact remains that of half-spaces",
+        "warning `thin_body`; the contact remains that of half-spaces. Without it a `sphere` "
+        "counts as a ball of the thickness 2 `radius`, and other profiles as half-spaces",
         default=None,
     )
 
