@@ -108,49 +108,28 @@ def normal_cases() -> Iterable[Record]:
             answer = state(profile, control, load, e_star)
             if not representable(*(float(v) for v in answer.values.values())):
                 continue
-            yield _normal_record(
-                family,
-                regime,
-                scale,
-                profile=profile,
-                control=control,
-                load=load,
-                answer=answer,
-            )
+            yield {
+                "id": f"{family.name}-{family.equation[1:-1]}-{regime}-{SHORT[control]}-{scale}",
+                "equation": family.equation,
+                "tags": {"family": family.name, "regime": regime, "scale": scale},
+                **_solved(profile, e_star, control, load, answer),
+            }
 
 
 def extreme_cases() -> Iterable[Record]:
     for name, equation, profile, e_star, control, load in EXTREMES:
-        answer = state(profile, control, load, e_star)
         yield {
             "id": f"{name}-{equation[1:-1]}-{SHORT[control]}",
             "equation": equation,
             "tags": {"family": name, "regime": "extreme", "scale": "any"},
-            "profile": profile,
-            "e_star": e_star,
-            "control": control,
-            "load": load,
-            "expected": {key: digits(value) for key, value in answer.values.items()},
-            "condition": {key: condition(value) for key, value in answer.condition.items()},
+            **_solved(profile, e_star, control, load, state(profile, control, load, e_star)),
         }
 
 
-def _normal_record(
-    family: Family,
-    regime: str,
-    scale: str,
-    *,
-    profile: Profile,
-    control: str,
-    load: float,
-    answer: State,
-) -> Record:
+def _solved(profile: Profile, e_star: float, control: str, load: float, answer: State) -> Record:
     return {
-        "id": f"{family.name}-{family.equation[1:-1]}-{regime}-{SHORT[control]}-{scale}",
-        "equation": family.equation,
-        "tags": {"family": family.name, "regime": regime, "scale": scale},
         "profile": profile,
-        "e_star": SCALES[scale][1],
+        "e_star": e_star,
         "control": control,
         "load": load,
         "expected": {name: digits(value) for name, value in answer.values.items()},
@@ -324,23 +303,22 @@ def _profile_record(family: Family, profile: Profile, scale: str) -> Record:
     return record
 
 
-def finite_range(record: Record) -> bool:
-    """Return all records; a value that is not representable is a defect of the case selection."""
-    return all(math.isfinite(value) for value in _numbers(record))
+def checked(record: Record | None) -> str | None:
+    """Return a record as a line; a value that is not representable is a defect of the selection."""
+    if record is None:
+        return None
+    if not all(math.isfinite(value) for value in _numbers(record)):
+        raise ArithmeticError(record["id"])
+    return json.dumps(record, separators=(",", ":"), allow_nan=False)
 
 
-def write(name: str, records: Iterable[Record]) -> None:
+def write(name: str, lines: Iterable[str | None]) -> None:
     started = time.perf_counter()
-    lines = []
-    for record in records:
-        if not finite_range(record):
-            raise ArithmeticError(record["id"])
-        lines.append(json.dumps(record, separators=(",", ":"), allow_nan=False))
-    text = "[\n" + ",\n".join(lines) + "\n]\n"
-    DATA.mkdir(exist_ok=True)
+    kept = [line for line in lines if line is not None]
+    text = "[\n" + ",\n".join(kept) + "\n]\n"
     (DATA / f"{name}.json").write_text(text, encoding="utf-8")
-    seconds = time.perf_counter() - started
-    sys.stderr.write(f"{name}: {len(lines)} records, {len(text)} bytes, {seconds:.0f} s\n")
+    seconds = math.ceil(time.perf_counter() - started)
+    sys.stderr.write(f"{name}: {len(kept)} records, {len(text)} bytes, {seconds} s\n")
 
 
 MAKERS = {
@@ -352,7 +330,7 @@ MAKERS = {
 
 def main(names: list[str]) -> None:
     for name in names or MAKERS:
-        write(name, MAKERS[name]())
+        write(name, map(checked, MAKERS[name]()))
 
 
 if __name__ == "__main__":

@@ -15,9 +15,9 @@ from mpmath import mp, mpf
 
 from tests.oracles import slip_reference as slip
 from tests.oracles.cases import FAMILIES, SCALES, Family, Profile
-from tests.oracles.generate import condition, digits, loads, profile_at
+from tests.oracles.generate import checked, condition, digits, loads, profile_at, write
 from tests.oracles.history_reference import history
-from tests.oracles.slip_generate import CLOSE, EQUATIONS, GENERAL, checked, material_at, write
+from tests.oracles.slip_generate import CLOSE, EQUATIONS, GENERAL, material_at
 from tests.oracles.slip_reference import WORK_DIGITS, Material, Setting
 
 if TYPE_CHECKING:

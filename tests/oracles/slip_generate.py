@@ -5,10 +5,7 @@ The output is byte-reproducible. Two processes share the work; the order is that
 
 from __future__ import annotations
 
-import json
-import math
 import sys
-import time
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -16,13 +13,20 @@ from typing import TYPE_CHECKING, Any
 from mpmath import mp, mpf
 
 from tests.oracles import slip_reference as reference
-from tests.oracles.bank import DATA
 from tests.oracles.cases import FAMILIES, SCALES, Family, Profile
-from tests.oracles.generate import condition, digits, finite_range, loads, profile_at, representable
+from tests.oracles.generate import (
+    checked,
+    condition,
+    digits,
+    loads,
+    profile_at,
+    representable,
+    write,
+)
 from tests.oracles.slip_reference import CONTROLS, OUTPUTS, WORK_DIGITS, Material, Setting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterator
 
 SHORT = {"indentation_depth": "d", "normal_force": "F", "contact_radius": "a"}
 TANGENTIAL = {
@@ -591,29 +595,12 @@ class FieldConditions:
         return (own + edge) / abs(value)
 
 
-def checked(record: Record | None) -> str | None:
-    if record is None:
-        return None
-    if not finite_range(record):
-        raise ArithmeticError(record["id"])
-    return json.dumps(record, separators=(",", ":"), allow_nan=False)
-
-
 def tangential_line(task: Task) -> str | None:
     return checked(tangential_record(task))
 
 
 def field_line(job: FieldTask) -> str | None:
     return checked(field_record(job))
-
-
-def write(name: str, lines: Iterable[str | None]) -> None:
-    started = time.perf_counter()
-    kept = [line for line in lines if line is not None]
-    text = "[\n" + ",\n".join(kept) + "\n]\n"
-    (DATA / f"{name}.json").write_text(text, encoding="utf-8")
-    seconds = math.ceil(time.perf_counter() - started)
-    sys.stderr.write(f"{name}: {len(kept)} records, {len(text)} bytes, {seconds} s\n")
 
 
 def main(names: list[str]) -> None:

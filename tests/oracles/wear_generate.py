@@ -5,10 +5,6 @@ The output is byte-reproducible. Two processes share the work; the order is that
 
 from __future__ import annotations
 
-import json
-import math
-import sys
-import time
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -16,9 +12,16 @@ from typing import TYPE_CHECKING, Any
 from mpmath import mp, mpf
 
 from tests.oracles import wear_reference as reference
-from tests.oracles.bank import DATA
 from tests.oracles.cases import FAMILIES, SCALES, Profile
-from tests.oracles.generate import condition, digits, finite_range, loads, profile_at, representable
+from tests.oracles.generate import (
+    checked,
+    condition,
+    digits,
+    loads,
+    profile_at,
+    representable,
+    write,
+)
 from tests.oracles.slip_generate import BLUNT, material_at
 from tests.oracles.slip_reference import WORK_DIGITS, Material, Setting, setting
 from tests.oracles.wear_reference import FIELDS, OUTPUTS, Limit
@@ -250,28 +253,12 @@ def _own(limit: Limit, name: str, r: mpf, value: mpf) -> mpf:
 
 
 def line(task: Task) -> str | None:
-    try:
-        record = record_of(task)
-    except Exception as error:
-        raise RuntimeError(task.name) from error
-    if record is None:
-        return None
-    if not finite_range(record):
-        raise ArithmeticError(record["id"])
-    return json.dumps(record, separators=(",", ":"), allow_nan=False)
+    return checked(record_of(task))
 
 
 def main() -> None:
-    started = time.perf_counter()
     with ProcessPoolExecutor(2) as pool:
-        kept = []
-        for each in pool.map(line, tasks(), chunksize=1):
-            kept += [] if each is None else [each]
-            sys.stderr.write(f"\r{len(kept)}")
-    text = "[\n" + ",\n".join(kept) + "\n]\n"
-    (DATA / "wear_limit.json").write_text(text, encoding="utf-8")
-    seconds = math.ceil(time.perf_counter() - started)
-    sys.stderr.write(f"\nwear_limit: {len(kept)} records, {len(text)} bytes, {seconds} s\n")
+        write("wear_limit", pool.map(line, tasks(), chunksize=1))
 
 
 if __name__ == "__main__":

@@ -81,8 +81,8 @@ def test_grid_extends_from_the_axis_beyond_the_edge(client: Client, points: int)
     ("kind", "load", "radius", "nulls"),
     [
         ("cone", [1e5, 0.0], [0.0, 0.01], [[True, False], [False, False]]),
-        ("flat_punch", [1e5, 0.0], [0.3, 0.2], [[True, False], [False, False]]),
-        ("truncated_cone", [1e5], [0.3, 0.2], [[True, False]]),
+        ("flat_punch", [1e5, 0.0], [1.0, 0.2], [[True, False], [False, False]]),
+        ("truncated_cone", [1e5], [0.5, 0.2], [[True, False]]),
         ("paraboloid", [1e5], [0.0, 0.01], [[False, False]]),
     ],
 )
