@@ -384,10 +384,12 @@ def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, 
     of_force = name == "normal_force"
     unit = e_star if of_force else 1.0
     amount, least = load / unit, curve.least[name]
-    below = np.asarray(amount < least * (1 + _LOAD))
+    # Under a tip as sharp as the root of r the contact vanishes at zero load.
+    below = np.asarray(amount < least * (1 + _LOAD) if least else amount <= 0)
     if some(below):
         pull_off = "pull-off force" if of_force else "pull-off depth"
-        detail = f"is below the {pull_off}, {least * unit:.9g}: there is no contact"
+        where = f"{'below' if least else 'not above'} the {pull_off}, {least * unit:.9g}"
+        detail = f"is {where}: there is no contact"
         raise InputError(("load", name, *validation.first_index(below)), detail, below)
     if profile.has_no_partial_slip:
         depth = amount / (2 * profile.contact_radius(amount)) if of_force else amount

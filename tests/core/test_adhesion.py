@@ -286,6 +286,14 @@ def test_many_random_contacts_have_the_states_of_a_scan(group: int) -> None:
     assert sum(most > 1 for _, most in results) >= 5
 
 
+@pytest.mark.parametrize("control", ["normal_force", "indentation_depth"])
+def test_tip_sharper_than_a_root_has_no_contact_without_load(control: str) -> None:
+    load: dict[str, Any] = {control: [1e-6, 0.0]}
+    with pytest.raises(mdr.InputError, match=r"is not above the pull-off .*, 0: there") as error:
+        mdr.adhesion.solve(mdr.Power(0.1, 0.45), 3e9, 1e-12, **load)
+    assert error.value.path == ("load", control, 1)
+
+
 def test_two_minima_give_the_lower_pull_off() -> None:
     """A blunt cap holds at its edge; the body beyond it has a minimum of its own."""
     profile, two = mdr.TruncatedCone(1.0, 0.1), 0

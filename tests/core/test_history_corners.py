@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from mdr_core import history, normal
+from mdr_core import fields, history, normal
 from mdr_core.profiles import FlatPunch, Paraboloid, Profile, RoundedPunch, Tabulated
 from tests.core.comparison import EPS, INPUT, profile_from
 from tests.core.test_history_paths import DEPTH, FULL_SLIP, MATERIAL, PROFILES, solve
@@ -439,3 +439,14 @@ def test_growth_in_the_ratio_of_friction_leaves_the_regime_as_it_is() -> None:
         "full_slip",
     ]
     assert result.dissipation[[2, 4]] == pytest.approx(0, abs=1e-15 * result.elastic_energy[-1])
+
+
+@pytest.mark.parametrize("control", ["normal_force", "indentation_depth"])
+def test_nonlinear_step_may_end_in_separation(control: str) -> None:
+    """Where both controls change, the arcs of the traction have gone with the contact."""
+    tangential = "tangential_displacement" if control == "normal_force" else "tangential_force"
+    path: dict[str, Any] = {control: [1.0, 1.0, 0.5, 0.0], tangential: [0.0, 0.02, 0.0, 0.0]}
+    found = history.solve(Paraboloid(1.0), 1.0, 0.8, 0.3, **path)
+    assert found.slip_fronts.size == 0
+    assert not found.state.in_contact
+    assert fields.shear_stress(found.state, [0.0, 0.5]).tolist() == [0.0, 0.0]

@@ -144,7 +144,8 @@ class NonlinearSteps:
         # Of each segment, below the vertex of its index.
         arcs, on_face = self.arcs[:, line.load_step], tree.on_face
         rate = np.where(on_face, 0.0, arcs[0])
-        rate[0] = 0.0
+        # None in separation.
+        rate[:1] = 0.0
         if not rate.any():
             return None
         coordinate = self.path.moments.contact_coordinate(tree.normal)
