@@ -99,7 +99,8 @@ class Curve:
     def excess(self, share: float, coordinate: Array) -> Array:
         """phi/c less a share: a g'/Delta_l in excess of that at pull-off [1]."""
         with np.errstate(all="ignore"):
-            slope = self.profile.depth_slope(coordinate) / self.profile.radius_slope(coordinate)
+            punch = self.profile.has_no_partial_slip
+            slope = inf if punch else self.profile.depth_slope(coordinate)
             return slope * np.sqrt(self.profile.contact_radius(coordinate)) / self.c - share
 
     def _branches(self, name: str) -> tuple[Array, Array]:

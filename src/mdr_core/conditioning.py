@@ -63,9 +63,8 @@ def near_full_slip(
         # The energy of a narrow annulus grows with the cube of its width.
         condition = 3 * moved * other_slope / (other(high)[0] - other_load)
         if edges:
-            radial = moved * profile.radius_slope(low)
             c, a = profile.contact_radius(low), profile.contact_radius(high)
-            condition = np.stack(np.broadcast_arrays(radial / c, radial / (a - c), condition))
+            condition = np.stack(np.broadcast_arrays(moved / c, moved / (a - c), condition))
             condition = np.where(np.isfinite(condition), condition, 0.0).max(axis=0)
     return where(late & np.isfinite(condition), condition, 0.0)
 
@@ -129,8 +128,7 @@ def of_edge_slope(contact: NormalContact, width: Array) -> Array:
         # A radius that is the coordinate itself does not move onto a break that it has not reached.
         exact = (contact.control == "contact_radius") & (at == contact.contact_radius)
         sides = np.stack(np.broadcast_arrays((1 - step) * at, where(exact, at, (1 + step) * at)))
-        # g'(a) is their ratio.
-        slopes = profile.depth_slope(sides) / profile.radius_slope(sides)
+        slopes = profile.depth_slope(sides)
         change = np.abs(np.log(slopes[1] / slopes[0])) * (error / step)
     return where(np.isfinite(change), change, 0.0)
 

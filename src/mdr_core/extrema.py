@@ -123,8 +123,9 @@ def _largest(profile: Profile, edge: Array, *slip: Array) -> Array:
 def _on_curve(profile: RoundedPunch, edge: Array) -> Array:
     """The largest pressure over E* under rounded punches [1], NaN beyond the curve."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        height = _curve()(np.log(edge / profile.flat_radius))[()]
-        return height * profile.depth(edge) / edge
+        _, s = profile.flank(edge)
+        height = _curve()(np.log(s / profile.flat_radius))[()]
+        return height * profile.depth(edge) / s
 
 
 @cache
@@ -133,8 +134,9 @@ def _curve() -> BPoly:
     unit = RoundedPunch(1.0, 1.0)
     share = _clustered(_DEGREE)
     ends = np.linspace(-_CURVED, _CURVED, _PIECES + 1)
-    edge = np.exp(ends[:-1] + np.diff(ends) * share[:, None])
-    height = _search(unit, edge.ravel()).reshape(edge.shape) * edge / unit.depth(edge)
+    s = np.exp(ends[:-1] + np.diff(ends) * share[:, None])
+    edge = s * s / (1 + np.hypot(1, s))
+    height = _search(unit, edge.ravel()).reshape(edge.shape) * s / unit.depth(edge)
     basis = [comb(_DEGREE, k) * share**k * (1 - share) ** (_DEGREE - k) for k in range(_DEGREE + 1)]
     return BPoly(np.linalg.solve(np.transpose(basis), height), ends, extrapolate=False)
 

@@ -259,11 +259,11 @@ def _largest_coordinates(profile: Profile, energy: Array) -> Array:
 def _motion(profile: Profile, end: float, mass: float, velocity: float, count: int) -> _Motion:
     """Return the compression up to the contact coordinate `end`, and its mirror image.
 
-    dt = dd/(v sqrt(1 - E/E_max)) is smooth in phi for the contact coordinate end sin(phi), except
+    dt = dd/(v sqrt(1 - E/E_max)) is smooth in phi for the contact coordinate end sin^2(phi), except
     at breaks of the profile, which are samples.
     """
     breaks = profile.coordinate_breaks
-    known = np.arcsin(breaks[breaks < end] / end)
+    known = np.arcsin(np.sqrt(breaks[breaks < end] / end))
     sides = np.unique(np.concatenate([np.pi / 2 * np.linspace(0.0, 1.0, count + 1), known]))
     width = np.diff(sides)
     phi = sides[:-1] + width * _NODES[:, None]
@@ -274,8 +274,8 @@ def _motion(profile: Profile, end: float, mass: float, velocity: float, count: i
         return np.sqrt(np.maximum(1 - stored, 0.0))
 
     # The tip takes the time d/v, also where d' is infinite on the axis.
-    s, corners = end * np.sin(phi), np.append(end * np.sin(sides[:-1]), end)
-    longer = profile.depth_slope(s) * end * np.cos(phi) * (1 / slowed(s) - 1)
+    s, corners = end * np.sin(phi) ** 2, np.append(end * np.sin(sides[:-1]) ** 2, end)
+    longer = profile.depth_slope(s) * end * np.sin(2 * phi) * (1 / slowed(s) - 1)
     depth, speed = profile.depth(corners), velocity * slowed(corners)
     step = (np.diff(depth) + width * (_WEIGHTS @ longer)) / velocity
     depth, speed = np.append(depth, depth[-2::-1]), np.append(speed, -speed[-2::-1])

@@ -224,27 +224,22 @@ class IntervalMoments:
         Parameters
         ----------
         span, ends : see `over_wide`.
-        base : contact coordinates of the breaks below, zero for none, shape (m,); beyond one all is
-            smooth in the root of the distance from it.
+        base : contact coordinates of the breaks below, zero for none, shape (m,); all is smooth in
+            the root of the distance from them.
         """
         profile, (start, stop) = self.profile, ends
         # The moments do not depend on the width itself, which may be below rounding error.
         width = np.maximum(stop - start, _EPS * stop)
         share, weights, cumulative = cumulative_rule(_POINTS)
-        place, moved = stop - width * (1 - share), np.broadcast_to(width, (_POINTS, span.size))
-        if some(base > 0):
-            high, bottom = np.sqrt(stop - base), np.sqrt(np.maximum(start - base, 0.0))
-            climb = width / np.where(high > 0, high + bottom, inf)
-            root, beyond = bottom + climb * share, base > 0
-            place = np.where(beyond, np.minimum(base + root * root, stop), place)
-            moved = np.where(beyond, 2 * root * climb, moved)
-            origin, past = np.where(beyond, base, place), np.where(beyond, root * root, 0.0)
-            slope = profile.depth_slope_beyond(place, origin, past)
-        else:
-            slope = profile.depth_slope(place)
+        high, bottom = np.sqrt(stop - base), np.sqrt(np.maximum(start - base, 0.0))
+        climb = width / np.where(high > 0, high + bottom, inf)
+        root = bottom + climb * share
+        past, moved = root * root, 2 * root * climb
+        place = np.minimum(base + past, stop)
+        slope = profile.depth_slope_beyond(place, base, past)
         # Rounding puts nodes of narrow intervals on a break, beyond which g' may be infinite.
         slope = np.where(slope < inf, slope, slope.min(axis=0))
-        rise, measure = moved * slope, weights * moved * profile.radius_slope(place)
+        rise, measure = moved * slope, weights * moved
         if self.over_forces:
             twice = 2 * profile.contact_radius(place)
             rise, measure = rise * twice, measure / np.square(twice)

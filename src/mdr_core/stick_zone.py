@@ -103,7 +103,7 @@ def _by_radius(contact: NormalContact, radius: Array) -> StickZone:
     c = np.maximum(radius, innermost)
     edge = profile.coordinate_from_radius(c)
     if contact.control == "contact_radius":
-        width = profile.coordinate_width(a, c, contact.coordinate, edge)
+        width = a - c
     else:
         # The coordinate of an edge that follows from a load is accurate, its radius may not be.
         width = where(c < a, np.maximum(contact.coordinate - edge, 0.0), 0.0)

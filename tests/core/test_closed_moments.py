@@ -14,7 +14,7 @@ BERNSTEIN = (lambda t: (1 - t) ** 2, lambda t: 2 * t * (1 - t), lambda t: t * t)
 def test_moments_next_to_the_equator_of_a_tip(low, high):
     """int B_k(t) 2 dx, t from 0 to 1 with g = x artanh x, up to 0.999 of the tangent radius."""
     profile = SphericalTipCone(10.0, 1.0)
-    ends = np.array([[low], [high]]) * float(profile.tangent_radius)
+    ends = np.array([[low], [high]]) * float(profile.flank_start)
     moments = interval_moments(profile, over_forces=False)
     depth = profile.depth(ends)
     found = moments.over(depth[0], depth[1] - depth[0], ends).weights[:, 0]
@@ -34,7 +34,7 @@ def test_moments_next_to_the_equator_of_a_tip(low, high):
 def test_moments_on_the_flank_of_a_steep_spherical_tip(ratio):
     """int B_k(t) 2 dx from b on, where the sphere continues to s = -h, h = b/10."""
     profile = SphericalTipCone(10.0, 1.0)
-    ends = np.array([[1.0], [ratio]]) * float(profile.tangent_radius)
+    ends = np.array([[1.0], [ratio]]) * float(profile.flank_start)
     depth = profile.depth(ends)
     moments = interval_moments(profile, over_forces=False)
     found = moments.over(depth[0], depth[1] - depth[0], ends).weights[:, 0]

@@ -1,6 +1,6 @@
 """Maximum pressure and shear stress of a contact."""
 
-from math import acosh, cosh, inf, pi, sqrt
+from math import acosh, cosh, hypot, inf, pi, sqrt
 from typing import Any
 
 import numpy as np
@@ -177,11 +177,11 @@ def test_largest_stress_just_beyond_a_flat(s: float, share: float) -> None:
     f'' s^2 y/(2 pi b). From s = 1e-8 b on no radius in double precision lies beyond the flat.
     """
     profile, bend = RoundedPunch(B, R), 1 / R
-    contact = normal.solve(profile, E_STAR, indentation_depth=profile.depth(np.array([s])))
+    edge, stick = (np.array([t * t / (B + hypot(B, t))]) for t in (s, share * s))
+    contact = normal.solve(profile, E_STAR, indentation_depth=profile.depth(edge))
     pressure = E_STAR * bend / B * s * s * LAPLACE / (2 * pi)
     assert contact.maximum_pressure == pytest.approx(pressure, rel=1e-12, abs=0)
-    width, edge = np.array([(1 - share) * s]), np.array([s])
-    found = largest_stress(profile, edge, np.array([True]), (width, edge - width))
+    found = largest_stress(profile, edge, np.array([True]), (edge - stick, stick))
     t = max(share, 1 / cosh(LAPLACE))
     shear = bend / B * s * s * (sqrt(1 - t * t) + t * t * acosh(1 / t)) / (2 * pi)
     assert found == pytest.approx(shear, rel=1e-12, abs=0)
@@ -197,9 +197,10 @@ def test_maximum_shear_stress_of_a_truncated_paraboloid(beyond: float, part: flo
     limit = MU * E_STAR / G_STAR * contact.indentation_depth
     pushed = tangential.solve(contact, G_STAR, MU, tangential_displacement=part * limit)
     with mp.workdps(30):
-        b, a = mpf(B), mpf(float(contact.coordinate))
+        b, outer = mpf(B), mpf(float(contact.coordinate))
         width = mpf(float(pushed.width))
-        c = a - width if width < a / 2 else mpf(float(pushed.stick_coordinate))
+        inner = outer - width if width < outer / 2 else mpf(float(pushed.stick_coordinate))
+        a, c = (mp.sqrt(x * (2 * b + x)) for x in (outer, inner))
         top = mp.acosh(a / c)
 
         def density(y: mpf) -> mpf:
@@ -261,7 +262,8 @@ def test_maximum_pressure_of_rounded_punches(edge: float) -> None:
         at = int(np.clip(np.argmin([height(share) for share in shares]), 1, 38))
         around = shares[at - 1], shares[at + 1]
         found = minimize_scalar(height, bounds=around, method="bounded", options={"xatol": 1e-9})
-    profile, edge_of_profile = RoundedPunch(0.7, 5.0), np.float64(0.7 * edge)
+    edge_of_profile = np.float64(0.7 * edge * edge / (1 + hypot(1, edge)))
+    profile = RoundedPunch(0.7, 5.0)
     result = largest_stress(profile, edge_of_profile, edge_of_profile > 0)
     assert result == pytest.approx(-found.fun / pi * 0.7 / 5.0, rel=1e-13, abs=0)
 

@@ -292,9 +292,9 @@ def test_pressure_of_a_steep_spherical_tip_cone(slope: float, part: float) -> No
     """The sphere ends next to its equator; the next singularity lies close to the tangent point."""
     given = {"kind": "spherical_tip_cone", "slope": slope, "tip_radius": 1.0}
     profile = profiles.SphericalTipCone(slope, 1.0)
-    a = part * float(profile.tangent_radius)
+    a = part * float(profile.flank_start)
     contact = normal.solve(profile, 1.0, contact_radius=a)
-    radii = [0.0, 0.5 * float(profile.tangent_radius), 0.9999 * a]
+    radii = [0.0, 0.5 * float(profile.flank_start), 0.9999 * a]
     at = slip_reference.setting(given, "contact_radius", a, slip_reference.Material(1.0, 1.0, 1.0))
     with mpmath.workdps(40):
         exact = [float(slip_reference.traction(at, mpmath.mpf(0), mpmath.mpf(r))) for r in radii]

@@ -471,7 +471,7 @@ def test_largest_stress_that_no_radius_resolves_is_rejected() -> None:
     """Beneath the edge the stresses are similar where s << b: they grow like s^2."""
     punch = RoundedPunch(0.5, 2.0)
     close, far, unresolved = (
-        normal.solve(punch, 3.0, indentation_depth=punch.depth(np.array(s)))
+        normal.solve(punch, 3.0, indentation_depth=punch.depth(np.array(s * s)))
         for s in (1e-6, 1e-5, 1e-7)
     )
     one, other = (float(largest(each, poissons_ratio=0.3).value) for each in (close, far))

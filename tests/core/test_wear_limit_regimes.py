@@ -241,7 +241,7 @@ def test_worn_annulus_beyond_the_sphere_of_a_tip(slope: float) -> None:
     assert (wear.wear_radius > 2.5).all()
     assert (np.diff(wear.wear_radius) > 0).all()
     # A stick edge on the tangent radius, or within rounding error of it.
-    b = float(np.asarray(profile.tangent_radius))
+    b = float(np.asarray(profile.flank_start))
     for c in (b, np.nextafter(b, 0.0), np.nextafter(b, 9.0)):
         size = 0.5 / 0.8 * (depth - float(profile.g(np.array([c]))[0]))
         wear = worn(profile, {"indentation_depth": depth}, {"tangential_displacement": size})

@@ -183,9 +183,8 @@ def test_traction_with_a_stick_edge_just_beyond_a_flat(margin: float) -> None:
     force = float(contact.normal_force) * (1 - margin)
     result = tangential.solve(contact, 1.0, 1.0, tangential_force=force)
     with mp.workdps(30):
-        low, high = (
-            mpf(float(s)) for s in (result.stick_coordinate, mp.sqrt(mpf(a) ** 2 - mpf(b) ** 2))
-        )
+        beyond = mpf(float(result.stick_coordinate))
+        low, high = mp.sqrt(beyond * (2 * mpf(b) + beyond)), mp.sqrt(mpf(a) ** 2 - mpf(b) ** 2)
 
         def exact(at: mpf) -> mpf:
             """(1/pi) int dg/ds / sqrt(x^2 - r^2) ds, Eq. (5.70)."""

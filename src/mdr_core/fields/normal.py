@@ -213,8 +213,7 @@ def _depth_left(profile: Profile, a: float, coordinate: float, r: Array) -> Arra
         result[r <= a] = coordinate
     elif inside.any():
         least = float(profile.first_radius)
-        x, edge, top = np.maximum(r[inside], least), np.array([a]), np.array([coordinate])
+        x, top = np.maximum(r[inside], least), np.array([coordinate])
         at = profile.coordinate_from_radius(x)
-        width = profile.coordinate_width(edge, x, top, at)
-        result[inside] = equivalent_1d.depth_step(profile, top, width, at)
+        result[inside] = equivalent_1d.depth_step(profile, top, a - x, at)
     return result

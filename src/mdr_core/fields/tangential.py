@@ -77,8 +77,7 @@ class Traction(NamedTuple):
             return np.zeros(x.shape)
         at = np.maximum(self.profile.coordinate_from_radius(x), self.coordinate[i])
         x, top = np.maximum(x, self.radius[i]), np.maximum(self.coordinate[i + 1], at)
-        width = self.profile.coordinate_width(self.radius[i + 1], x, top, at)
-        width = np.where(at == self.coordinate[i], self.width[i], width)
+        width = np.where(at == self.coordinate[i], self.width[i], self.radius[i + 1] - x)
         return self.slope[i] * equivalent_1d.depth_step(self.profile, top, width, at)
 
 
@@ -257,8 +256,7 @@ def _at_end(state: ContactState) -> Traction:
     rows = segments.coordinate, radius, width, segments.slope
     if not segments.rate.any():
         return Traction(*known, *rows, state.load[1:] / modulus)
-    wide = profile.radius_width(segments.coordinate[1:], width)
-    columns = (part.tolist() for part in (segments.rate, radius[:-1], radius[1:], wide))
+    columns = (part.tolist() for part in (segments.rate, radius[:-1], radius[1:], width))
     arcs = tuple(
         Arc(profile, rate, segments.inverse, *interval) if rate else None
         for rate, *interval in zip(*columns, strict=True)

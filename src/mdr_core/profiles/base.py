@@ -52,7 +52,7 @@ class Profile(ABC):
     """Rigid axisymmetric profile f(r) with f(0) = 0 and its equivalent profile g(x).
 
     The contact edge is described by the *contact coordinate* of the kind, a number in which
-    radius, depth and force are all accurate: the radius a, or sqrt(a^2 - b^2) beyond a flat of
+    radius, depth and force are all accurate: the radius a, or its distance a - b from a flat of
     radius b, next to which a does not resolve them. It is zero at zero load.
 
     A kind defines f, f', g, g', F_N/E* and its closed forms. Every other method has a general
@@ -233,24 +233,6 @@ class Profile(ABC):
         """Contact radius a [length]."""
         return coordinate
 
-    def radius_slope(self, coordinate: Array) -> Array:
-        """Derivative of the contact radius with respect to the contact coordinate."""
-        return full(1.0, coordinate)
-
-    def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
-        """Difference s_a - s_c of two contact coordinates, as accurate as a - c.
-
-        Parameters
-        ----------
-        a, c : contact radii, a >= c [length].
-        s_a, s_c : their contact coordinates.
-        """
-        return a - c
-
-    def radius_width(self, s_a: Array, width: Array) -> Array:
-        """Difference a - c of the radii at the contact coordinates s_a and s_a - width [length]."""
-        return width
-
     # The normal contact.
 
     def depth(self, coordinate: Array) -> Array:
@@ -285,10 +267,9 @@ class Profile(ABC):
         depth = self.depth(coordinate)
 
         def density(s: Array) -> Array:
-            return np.square(depth - self.depth(s)) * self.radius_slope(s)
+            return np.square(depth - self.depth(s))
 
-        flat = self.contact_radius(full(0.0, coordinate)) * np.square(depth)
-        return flat + power_law_integral(density, coordinate, self.scale)
+        return power_law_integral(density, coordinate, self.scale)
 
     def coordinate_from_load(self, load: Array, *, of_force: bool) -> Array:
         """Contact coordinate at which F_N/E* [length^2] or the depth g(a) [length] has a value.

@@ -49,7 +49,7 @@ class CappedParaboloid(Tipped):
             )
 
     @property
-    def tangent_radius(self) -> Parameter:
+    def flank_start(self) -> Parameter:
         return self.cap_radius
 
     @cached_property
@@ -67,7 +67,7 @@ class CappedParaboloid(Tipped):
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         """True on the cap, which is a paraboloid. See `Profile`."""
-        return coordinate <= self.tangent_radius
+        return coordinate <= self.flank_start
 
     def f(self, radius: Array) -> Array:
         square, b2 = radius * radius, np.square(self.cap_radius)
@@ -81,7 +81,7 @@ class CappedParaboloid(Tipped):
     def _flank_depth(self, x: Array, s: Array) -> Array:
         return x * (x + self._relative_step * s) / self.tip_radius
 
-    def _flank_weight(self, x: Array, s: Array) -> Array:
+    def weight(self, x: Array, s: Array) -> Array:
         return (2 * s + self._relative_step * (x + s * s / x)) / self.tip_radius
 
     def _flank_slope(self, x: Array, s: Array) -> Array:

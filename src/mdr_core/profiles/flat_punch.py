@@ -67,12 +67,6 @@ class FlatPunch(Profile):
             "prescribe indentation_depth or normal_force",
         )
 
-    def radius_slope(self, coordinate: Array) -> Array:
-        return full(0.0, coordinate)
-
-    def radius_width(self, s_a: Array, width: Array) -> Array:
-        return 0 * width
-
     def depth(self, coordinate: Array) -> Array:
         return coordinate + 0 * self.radius
 

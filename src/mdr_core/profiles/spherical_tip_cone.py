@@ -45,7 +45,7 @@ class SphericalTipCone(TippedCone):
         return 3e-14 + _EPS * self.slope * self.slope
 
     @cached_property
-    def tangent_radius(self) -> Parameter:
+    def flank_start(self) -> Parameter:
         below = np.nextafter(self.tip_radius, 0.0)
         return np.minimum(self.tip_radius * (self.slope / np.hypot(1.0, self.slope)), below)
 
@@ -64,20 +64,20 @@ class SphericalTipCone(TippedCone):
 
     def _log_term(self, x: Array, s: Array) -> Array:
         """L, by 1 + b^2 [1/(R + h) + 1/(x + s)]/(h + s) = (R + x)/(h + s)."""
-        b, big, h = self.tangent_radius, self.tip_radius, self._opposite_singularity
+        b, big, h = self.flank_start, self.tip_radius, self._opposite_singularity
         return np.log1p(b / (h + s) * (b / (big + h) + b / (x + s)))
 
     def _flank_depth(self, x: Array, s: Array) -> Array:
-        phi = np.arctan(s / self.tangent_radius)
+        phi = np.arctan(s / self.flank_start)
         return x * (self._log_term(x, s) + self.slope * phi)
 
     def _flank_slope(self, x: Array, s: Array) -> Array:
         """L + t phi + t b R/(x h + s R)."""
-        b, big, h, t = self.tangent_radius, self.tip_radius, self._opposite_singularity, self.slope
+        b, big, h, t = self.flank_start, self.tip_radius, self._opposite_singularity, self.slope
         return self._log_term(x, s) + t * np.arctan(s / b) + t * b * big / (x * h + s * big)
 
     def _flank_force(self, x: Array, s: Array) -> Array:
-        b, big, h = self.tangent_radius, self.tip_radius, self._opposite_singularity
+        b, big, h = self.flank_start, self.tip_radius, self._opposite_singularity
         sphere = np.square(b * b) / (big * x + h * s)
         sphere = sphere + (big * big + x * x) * tanh_gap(self._log_term(x, s))
         return sphere + self.slope * (x * x * np.arctan(s / b) + b * s)
@@ -85,4 +85,4 @@ class SphericalTipCone(TippedCone):
     def falls_from_axis(self, coordinate: Array) -> Flags:
         if self.slope <= _SHALLOW:
             return coordinate >= 0
-        return (coordinate <= self.tangent_radius) & self._tip.falls_from_axis(coordinate)
+        return (coordinate <= self.flank_start) & self._tip.falls_from_axis(coordinate)

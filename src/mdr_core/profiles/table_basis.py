@@ -12,7 +12,6 @@ from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import BSpline, PPoly
 from scipy.linalg import solve_triangular
 
-from mdr_core.abel.annulus import inverse_hypot
 from mdr_core.abel.slope_pieces import heights
 from mdr_core.profiles.table_points import TablePoints
 from mdr_core.profiles.truncated import RoundedPunch, TruncatedCone
@@ -51,13 +50,12 @@ class TableFit:
         a = np.ravel(radius) / end
         depth, moment = (each(a).reshape(a.size, -1) for each in self.spread)
         for b, jumps in self.spread_of_jumps:
-            s = inverse_hypot(np.maximum(a, b), b)
             for shape, jump in zip(
                 (TruncatedCone(b, 1.0), RoundedPunch(b, 1.0)), jumps, strict=True
             ):
-                own = shape.depth(s)
+                own = shape.g(a)
                 depth = depth + np.outer(own, jump)
-                moment = moment + np.outer(a * own - shape.reduced_force(s) / 2, jump)
+                moment = moment + np.outer(a * own - shape.force_within(a) / 2, jump)
         errors = depth, a[:, None] * depth - moment, moment
         units = height, end * height, end * height
         return tuple(

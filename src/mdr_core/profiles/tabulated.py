@@ -218,14 +218,6 @@ class Tabulated(Profile):
             if factor != 0
         )
 
-    def _with_flanks(
-        self, spline: Array, x: Array, of_flank: Callable[[Truncated, Array], Array]
-    ) -> Array:
-        """Sum of a quantity of the spline and of those of the flanks, by contact coordinate."""
-        for factor, shape in self._flanks:
-            spline = spline + factor * of_flank(shape, inverse_hypot(x, shape.flat_radius))
-        return spline
-
     def _require_inside(self, radius: Array) -> None:
         if some(radius > self._end):
             raise InputError(("profile", "r"), f"the table ends at radius {self._end:.12g}")
@@ -252,7 +244,7 @@ class Tabulated(Profile):
 
     def g(self, x: Array) -> Array:
         self._require_inside(x)
-        return self._with_flanks(self._spline.depth(x), x, lambda shape, s: shape.depth(s))
+        return self._spline.depth(x) + sum(factor * shape.g(x) for factor, shape in self._flanks)
 
     def dg(self, x: Array) -> Array:
         self._require_inside(x)
@@ -265,17 +257,16 @@ class Tabulated(Profile):
         for factor, shape in self._flanks:
             b = shape.flat_radius
             above = where(start == b, past, np.maximum(coordinate - b, 0.0))
-            x, s = b + above, np.sqrt(above * (2 * b + above))
-            slope = slope + where(
-                s > 0, factor * shape.weight(x, s) * x / where(s > 0, s, 1.0), 0.0
-            )
+            slope = slope + where(above > 0, factor * shape.depth_slope(above), 0.0)
         return slope
 
     # The normal contact.
 
     def reduced_force(self, coordinate: Array) -> Array:
         spline = 2 * self._spline.half_force(coordinate)
-        return self._with_flanks(spline, coordinate, lambda shape, s: shape.reduced_force(s))
+        return spline + sum(
+            factor * shape.force_within(coordinate) for factor, shape in self._flanks
+        )
 
     def reduced_energy(self, coordinate: Array) -> Array:
         """Closed for a spline; with flanks int_0^a F_N(x)/E* g'(x) dx."""
@@ -349,8 +340,8 @@ class Tabulated(Profile):
         value = 2 / np.pi * self._spline.under(0.0, float(a[0]), r, arcsine)
         for factor, shape in self._flanks:
             if a[0] > shape.flat_radius:
-                s = float(inverse_hypot(a[0], shape.flat_radius))
-                value += factor * shape.outer_displacement(a, r, rtol, s)
+                beyond = float(a[0] - shape.flat_radius)
+                value += factor * shape.outer_displacement(a, r, rtol, beyond)
         return value
 
     def annulus_integrals(self, low: Array, width: Array, *kernels: Kernel, rtol: float) -> Array:

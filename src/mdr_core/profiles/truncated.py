@@ -1,6 +1,5 @@
 """Flat-ended profiles: rounded punch, truncated cone, truncated paraboloid."""
 
-from abc import abstractmethod
 from dataclasses import dataclass
 from math import pi
 from typing import ClassVar
@@ -12,50 +11,42 @@ from mdr_core.abel.displacement import Branch
 from mdr_core.abel.two_root import two_root_integral
 from mdr_core.elementwise import some, where
 from mdr_core.errors import InputError
-from mdr_core.profiles.base import NORMAL_QUANTITIES, Profile
+from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.profiles.cancellation_free import atan_gap
+from mdr_core.profiles.flanked import Flanked
 from mdr_core.typing import Array, Parameter
 from mdr_core.validation import first_index
 
 
-class Truncated(Profile):
-    """Profile with f = 0 up to b = `flat_radius` and a closed dg/ds = g'(x) s/x beyond it.
+class Truncated(Flanked):
+    """Profile with f = 0 up to b = `flat_radius`.
 
-    The contact coordinate is s = sqrt(a^2 - b^2), because a alone is not accurate as a -> b.
-    Source: notes, §4.
+    The contact coordinate is a - b, because a alone is not accurate as a -> b. Source: notes, §4.
     """
 
     flat_radius: Parameter
 
     @property
-    def breaks(self) -> tuple[Parameter, ...]:
-        return (self.flat_radius,)
-
-    @property
-    def scale(self) -> Parameter:
+    def flank_start(self) -> Parameter:
         return self.flat_radius
 
     @property
     def branches(self) -> tuple[Branch, ...]:
         return (Branch(float(np.asarray(self.flat_radius)), self.weight),)
 
-    @abstractmethod
-    def weight(self, x: Array, s: Array) -> Array:
-        """Slope dg/ds = g'(x) s/x beyond the flat [1], analytic and even in s."""
+    def _flank_slope(self, x: Array, s: Array) -> Array:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self.weight(x, s) * x / s
 
     def g(self, x: Array) -> Array:
-        return self.depth(inverse_hypot(x, self.flat_radius))
+        return self.depth(np.maximum(x - self.flat_radius, 0.0))
 
     def dg(self, x: Array) -> Array:
-        s = inverse_hypot(x, self.flat_radius)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return where(x < self.flat_radius, 0.0, self.weight(x, s) * x / s)
-
-    def depth_slope(self, coordinate: Array) -> Array:
-        return self.weight(self.contact_radius(coordinate), coordinate)
+        past = x - self.flat_radius
+        return where(past < 0, 0.0, self.depth_slope(np.maximum(past, 0.0)))
 
     def contact_radius(self, coordinate: Array) -> Array:
-        return np.sqrt(self.flat_radius * self.flat_radius + coordinate * coordinate)
+        return self.flat_radius + coordinate
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
         inside = contact_radius < self.flat_radius
@@ -65,34 +56,45 @@ class Truncated(Profile):
                 f"the contact cannot be smaller than the flat, flat_radius = {self.flat_radius}",
                 inside,
             )
-        return inverse_hypot(contact_radius, self.flat_radius)
+        return contact_radius - self.flat_radius
 
-    def radius_slope(self, coordinate: Array) -> Array:
-        return coordinate / self.contact_radius(coordinate)
+    def depth(self, coordinate: Array) -> Array:
+        return self._flank_depth(*self.flank(coordinate))
 
-    def coordinate_width(self, a: Array, c: Array, s_a: Array, s_c: Array) -> Array:
-        """(a^2 - c^2)/(s_a + s_c). Parameters: see `Profile`."""
-        return (a - c) * (a + c) / where(s_a > 0, s_a + s_c, 1.0)
+    def depth_slope(self, coordinate: Array) -> Array:
+        return self._flank_slope(*self.flank(coordinate))
 
-    def radius_width(self, s_a: Array, width: Array) -> Array:
-        total = self.contact_radius(s_a) + self.contact_radius(s_a - width)
-        return width * (2 * s_a - width) / where(total > 0, total, 1.0)
+    def reduced_force(self, coordinate: Array) -> Array:
+        return self._flank_force(*self.flank(coordinate))
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        return self._flank_energy(coordinate)
+
+    def axis_stress(self, coordinate: Array) -> Array:
+        return self._flank_stress(coordinate)
 
     def pressure_kernel(
         self, annulus: Annulus, radius: Array, rtol: float, beyond: Array | None = None
     ) -> Array:
-        """In the contact coordinate, of the radii as well if it is given as `beyond`.
+        """In s, of the radii as well if their contact coordinates are given as `beyond`.
 
         Source: notes, §5. Parameters: see `Profile`.
         """
+        outer, width, inner, edge, stick = annulus
         b = float(self.flat_radius)
-        return two_root_integral(self.weight, b, radius, annulus, rtol=rtol, beyond=beyond) / pi
+        past = np.maximum(inner - b, 0.0) if stick is None else stick
+        (a, top), (c, low) = self.flank(outer), self.flank(past)
+        gap = width * (a + c) / where(top > 0, top + low, 1.0)
+        ends = Annulus(top, gap, inner, edge, low)
+        s = None if beyond is None else self.flank(beyond)[1]
+        return two_root_integral(self.weight, b, radius, ends, rtol=rtol, beyond=s) / pi
 
     def pressure_kernel_at(self, annulus: Annulus, coordinate: Array, rtol: float) -> Array:
         """Parameters: see `Profile`."""
         inside, values = coordinate < annulus.outer, np.zeros(coordinate.shape)
-        s = coordinate[inside]
-        values[inside] = self.pressure_kernel(annulus.at(inside), self.contact_radius(s), rtol, s)
+        past = coordinate[inside]
+        x, annuli = self.contact_radius(past), annulus.at(inside)
+        values[inside] = self.pressure_kernel(annuli, x, rtol, past)
         return values
 
 
@@ -121,18 +123,14 @@ class RoundedPunch(Truncated):
     def df(self, radius: Array) -> Array:
         return np.maximum(radius - self.flat_radius, 0.0) / self.rounding_radius
 
-    def dg(self, x: Array) -> Array:
-        s, b = inverse_hypot(x, self.flat_radius), self.flat_radius
-        return (s + atan_gap(s, b)) / self.rounding_radius
+    def _flank_slope(self, x: Array, s: Array) -> Array:
+        return (s + atan_gap(s, self.flat_radius)) / self.rounding_radius
 
-    def depth(self, coordinate: Array) -> Array:
-        gap = atan_gap(coordinate, self.flat_radius)
-        return self.contact_radius(coordinate) * gap / self.rounding_radius
+    def _flank_depth(self, x: Array, s: Array) -> Array:
+        return x * atan_gap(s, self.flat_radius) / self.rounding_radius
 
-    def reduced_force(self, coordinate: Array) -> Array:
-        cube = coordinate * coordinate * coordinate
-        edge = self.contact_radius(coordinate)
-        return edge * self.depth(coordinate) + cube / (3 * self.rounding_radius)
+    def _flank_force(self, x: Array, s: Array) -> Array:
+        return x * self._flank_depth(x, s) + s * s * s / (3 * self.rounding_radius)
 
     def weight(self, x: Array, s: Array) -> Array:
         """(b/R) (2 s/b - arctan(s/b)) s/x."""
@@ -169,13 +167,12 @@ class TruncatedCone(Truncated):
     def df(self, radius: Array) -> Array:
         return where(radius < self.flat_radius, 0.0, self.slope)
 
-    def depth(self, coordinate: Array) -> Array:
-        phi = np.arctan(coordinate / self.flat_radius)
-        return self.slope * self.contact_radius(coordinate) * phi
+    def _flank_depth(self, x: Array, s: Array) -> Array:
+        return self.slope * x * np.arctan(s / self.flat_radius)
 
-    def reduced_force(self, coordinate: Array) -> Array:
-        b, edge = self.flat_radius, self.contact_radius(coordinate)
-        return self.slope * (edge * edge * np.arctan(coordinate / b) + b * coordinate)
+    def _flank_force(self, x: Array, s: Array) -> Array:
+        b = self.flat_radius
+        return self.slope * (x * x * np.arctan(s / b) + b * s)
 
     def weight(self, x: Array, s: Array) -> Array:
         """t (s arctan(s/b) + b)/x."""
@@ -212,17 +209,17 @@ class TruncatedParaboloid(Truncated):
     def df(self, radius: Array) -> Array:
         return where(radius < self.flat_radius, 0.0, radius / self.radius)
 
-    def depth(self, coordinate: Array) -> Array:
-        return self.contact_radius(coordinate) * coordinate / self.radius
+    def _flank_depth(self, x: Array, s: Array) -> Array:
+        return x * s / self.radius
 
-    def reduced_force(self, coordinate: Array) -> Array:
-        b, s = self.flat_radius, coordinate
+    def _flank_force(self, x: Array, s: Array) -> Array:
+        b = self.flat_radius
         return 2 * s * (3 * (b * b) + 2 * s * s) / (3 * self.radius)
 
     def coordinate_from_depth(self, depth: Array) -> Array:
         """s^2 = 2 h^2/(b^2 + sqrt(b^4 + 4 h^2)), h = R d: the root of s^4 + b^2 s^2 = h^2."""
         b2, h = np.square(self.flat_radius), self.radius * depth
-        return np.sqrt(2 / (b2 + np.hypot(b2, 2 * h))) * h
+        return self._beyond(np.sqrt(2 / (b2 + np.hypot(b2, 2 * h))) * h)
 
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
         """s^3 + (3/2) b^2 s = (3/4) R F/E*, by the hyperbolic form of the cubic's root.
@@ -233,12 +230,16 @@ class TruncatedParaboloid(Truncated):
         goal = 0.75 * (reduced_force * self.radius / (b * np.square(b)))
         z = np.sqrt(2) * np.sinh(np.arcsinh(np.sqrt(2) * goal) / 3)
         z2 = z * z
-        return b * (z - (z * (z2 + 1.5) - goal) / (3 * z2 + 1.5))
+        return self._beyond(b * (z - (z * (z2 + 1.5) - goal) / (3 * z2 + 1.5)))
+
+    def _beyond(self, s: Array) -> Array:
+        """x - b = s^2/(x + b)."""
+        return s * (abs(s) / (self.flat_radius + np.hypot(self.flat_radius, s)))
 
     def reduced_energy(self, coordinate: Array) -> Array:
         """(1/R^2) [a s^2 (b^2 + s^2/3) + s^4 (3a^3 + 6a^2 b + 4a b^2 + 2b^3)/(15 (a + b)^2)]."""
-        b, s2 = self.flat_radius, coordinate * coordinate
-        a = self.contact_radius(coordinate)
+        b, (a, s) = self.flat_radius, self.flank(coordinate)
+        s2 = s * s
         cubic = ((3 * a + 6 * b) * a + 4 * (b * b)) * a + 2 * (b * b * b)
         outer = s2 * s2 * cubic / (15 * np.square(a + b))
         return (a * s2 * (b * b + s2 / 3) + outer) / np.square(self.radius)

@@ -111,9 +111,8 @@ class Foundation:
         self._part = part = np.searchsorted(outer, high)
         self._base = base = np.array([branch.base for branch in branches])[self._owner]
         # An annulus may be too narrow for its radii to resolve it.
-        gap = load.profile.radius_width(load.coordinate[1:], load.width)[part]
         whole = (inner[part] == low) & (outer[part] == high)
-        width = np.where(whole, gap, high - low) * (high + low)
+        width = np.where(whole, load.width[part], high - low) * (high + low)
         s_low = np.sqrt((low - base) * (low + base))
         s_high = np.sqrt(s_low * s_low + width)
         self._ends = np.array([s_low, s_high])

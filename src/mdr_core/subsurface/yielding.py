@@ -39,7 +39,7 @@ _ACROSS, _STEPS = np.linspace(-1, 1, 5), 3.0
 _SHRINK, _FLAT, _ROUNDING, _ROUNDS = 0.3, 4e-6, 1e-11, 100
 # Contact coordinate over the radius of a flat below which no radius in double precision resolves
 # the stress beneath the edge: at this one it is too low by 5e-6 of its value.
-_RESOLVED: Final = 1e-6
+_RESOLVED: Final = 5e-13
 # Logarithms of the force at the onset: distance from a singular one, step of the secant after which
 # the next is negligible, and range.
 _XTOL, _AGREED, _REACH = 1e-6, 3e-4, 60.0

@@ -92,7 +92,7 @@ def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> L
         edge = top - width
         c = profile.contact_radius(edge)
         value = equivalent_1d.force_step(profile, top, width, edge) / (2 * c)
-        return value, width * (profile.depth_slope(edge) / value + profile.radius_slope(edge) / c)
+        return value, width * (profile.depth_slope(edge) / value + 1 / c)
 
     # The stick edge before wear lies further in: there the annulus outside carries load as well.
     widest = where(target > 0, contact.width, 1.0)
@@ -129,7 +129,7 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
         edge = np.maximum(top - width, 0.0)
         c, step = profile.contact_radius(edge), equivalent_1d.depth_step(profile, top, width, edge)
         with np.errstate(divide="ignore", invalid="ignore"):
-            slope = c * profile.depth_slope(edge) - profile.radius_slope(edge) * step
+            slope = c * profile.depth_slope(edge) - step
             return c * step, width * slope / (c * step)
 
     low, high = _first_crossing(lambda width: carried(width)[0], top, target)
@@ -175,7 +175,7 @@ def _first_crossing(
 def _beneath(profile: Profile, top: Array, width: Array) -> tuple[Array, Array, Array]:
     """Return the coordinate, radius and slip width at a width beneath the contact's edge."""
     edge = top - width
-    return edge, profile.contact_radius(edge), profile.radius_width(top, width)
+    return edge, profile.contact_radius(edge), width
 
 
 # By the constant load and the amplitude.

@@ -1,0 +1,72 @@
+"""Profiles whose g has a root at the end of a flat or of a tip."""
+
+from abc import abstractmethod
+from collections.abc import Callable
+from math import inf, pi
+
+import numpy as np
+
+from mdr_core.profiles.base import Profile
+from mdr_core.profiles.power_law_integral import power_law_integral
+from mdr_core.typing import Array, Parameter
+
+
+class Flanked(Profile):
+    """Profile given in x and s = sqrt(x^2 - b^2) on its flank, beyond the radius b."""
+
+    @property
+    @abstractmethod
+    def flank_start(self) -> Parameter:
+        """Radius b at which the flat, or the tip, ends [length]."""
+
+    @abstractmethod
+    def _flank_depth(self, x: Array, s: Array) -> Array:
+        """g(x) on the flank [length]."""
+
+    @abstractmethod
+    def _flank_slope(self, x: Array, s: Array) -> Array:
+        """g'(x) on the flank [1]."""
+
+    @abstractmethod
+    def _flank_force(self, x: Array, s: Array) -> Array:
+        """F_N(x)/E* on the flank [length^2]."""
+
+    @abstractmethod
+    def weight(self, x: Array, s: Array) -> Array:
+        """Slope dg/ds = g'(x) s/x on the flank [1], analytic in s."""
+
+    @property
+    def breaks(self) -> tuple[Parameter, ...]:
+        return (self.flank_start,)
+
+    @property
+    def scale(self) -> Parameter:
+        return self.flank_start
+
+    @property
+    def _opposite_singularity(self) -> Parameter:
+        """Distance of the flank's singularity at s = -`_opposite_singularity` [length]."""
+        return inf
+
+    def flank(self, past: Array) -> tuple[Array, Array]:
+        """x and s at x = b + past."""
+        b = self.flank_start
+        return b + past, np.sqrt(past * (2 * b + past))
+
+    def _flank_energy(self, past: Array) -> Array:
+        """int F_N/E* dg from b to b + past [length^3]."""
+        return self._over_flank(self._flank_force, past)
+
+    def _flank_stress(self, past: Array) -> Array:
+        """(1/pi) int dg/x from b to b + past [1]."""
+        return self._over_flank(lambda x, _: 1 / x, past) / pi
+
+    def _over_flank(self, factor: Callable[[Array, Array], Array], past: Array) -> Array:
+        b = self.flank_start
+
+        def density(s: Array) -> Array:
+            x = np.hypot(b, s)
+            return factor(x, s) * self.weight(x, s)
+
+        nearest = np.minimum(b, self._opposite_singularity)
+        return power_law_integral(density, self.flank(past)[1], nearest)
