@@ -78,7 +78,7 @@ class _MovingAnnulus(AnnulusState):
 
     @property
     def convected(self) -> tuple[Array, Array]:
-        """Rate of `worn` per unit of b'/b, and its gradient in `worn`."""
+        """Rate of `worn` per unit of b'/b, L in `worn_rates`, and its gradient in `worn`."""
         along, gradient = self._along(self.initial.maps.inward)
         # In full slip the worn depth is b times `worn`.
         if self.initial.full_slip:
@@ -86,7 +86,7 @@ class _MovingAnnulus(AnnulusState):
         return along, gradient
 
     def _along(self, slope: Array) -> tuple[Array, Array]:
-        """2 z d worn/dz and its gradient in `worn`, by one of the two maps to slopes.
+        """L = 2 z d worn/dz and its gradient in `worn`, by one of the two maps to slopes.
 
         Material outside a shrinking stick zone has worn exponentially with its distance from the
         edge, so that v differs by orders of magnitude between neighbours. The slope of ln(v/z)
@@ -101,7 +101,7 @@ class _MovingAnnulus(AnnulusState):
 
     @property
     def past_stick(self) -> tuple[Array, Array]:
-        """Rate of `worn` per unit of the rate of c, and its gradient in `worn`."""
+        """Rate of `worn` per unit of c', (c/s^2) (worn + L), and its gradient in `worn`."""
         maps = self.initial.maps
         along, gradient = self._along(maps.inward if self.initial.stick_grows else maps.outward)
         scale = self.stick / (self.end**2 * maps.squares)
@@ -109,7 +109,14 @@ class _MovingAnnulus(AnnulusState):
 
     @cached_property
     def worn_rates(self) -> Array:
-        """Rates of `worn` at nodes that move with the edges, (n, 4)."""
+        """Rates of `worn` at nodes that move with the edges, (n, 4).
+
+        With s^2 = r^2 - c^2 = b^2 z the slip beyond that of the unworn shape is s worn. At a place
+        r it grows by p sigma - (2/pi) arccos(c/r) w_c'. A node keeps its z: r r' = c c' + z b b',
+        so that
+
+            worn' = p v + (b'/b) L + (c c'/s^2) (worn + L) - (2/pi) arccos(c/r) w_c'/s.
+        """
         b = self.end
         columns = np.zeros((self.x.size, 4))
         columns[:, _WEAR] = self.pressure * self.slip
@@ -187,7 +194,10 @@ class _MovingAnnulus(AnnulusState):
 
     @property
     def _outer_edge(self) -> Array:
-        """Rate of gamma(a) - D, with the return of its error."""
+        """Rate of gamma(a) - D, with the return of its error.
+
+        As gamma = x omega, it is a omega(a)' + a' omega(a) - D' + RETURN (gamma(a) - D).
+        """
         omega, a = self._omega_rates[-1].copy(), self.x[-1]
         slope = float(self.initial.slope(self.x[-1:])[0])
         omega[_END:_RETAINED] += (slope - self.unworn[-1]) / a * self.motion[:, -1]
