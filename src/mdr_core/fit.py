@@ -204,12 +204,15 @@ def _curve(indentation_depth: ArrayLike, normal_force: ArrayLike) -> tuple[Array
     )
     if np.ptp(depth) == 0:
         raise InputError(("indentation_depth",), "must hold different depths")
-    # Pull-off alone has its largest force outside contact too, but its least one is farther from
-    # most forces.
-    height = force - np.median(force)
-    at_largest = depth[int(np.argmax(force))]
-    if height.max() > -height.min() and at_largest < (depth.max() + depth.min()) / 2:
-        detail = "the largest force lies at a small depth: reverse the sign "
+    # The force falls to a pull-off too, whose least force is farther from most forces than the
+    # largest one.
+    height, order = force - np.median(force), np.argsort(depth, kind="stable")
+    tenth = max(depth.size // 10, 1)
+    falls = height[order[-tenth:]].mean() < height[order[:tenth]].mean()
+    if falls and height.max() > -height.min():
+        detail = (
+            "the largest force lies at a small depth: reverse the sign of a separation or height"
+        )
         raise InputError(("indentation_depth",), detail)
     return depth, force
 

@@ -254,6 +254,17 @@ def test_separation_in_place_of_depth_is_refused() -> None:
                 assert error.value.path == ("indentation_depth",)
 
 
+def test_shallow_contact_beneath_noise_is_no_separation() -> None:
+    """A tenth of the points is in contact, with forces of the size of single errors."""
+    random, profile = np.random.default_rng(3), SHAPES["paraboloid"]
+    depth = np.linspace(-0.1, 1e-2, 1000)
+    force = forces(profile, depth)
+    for _ in range(20):
+        noisy = force + random.normal(0, force.max() / 3, depth.size)
+        found = fit.solve(profile, indentation_depth=depth, normal_force=noisy)
+        assert found.e_star == pytest.approx(E_STAR, rel=0, abs=5 * found.standard_errors[0])
+
+
 def test_pull_off_alone_is_no_separation() -> None:
     """Three states below zero force, and many points after the pull-off, on any offset."""
     depth = np.append(np.linspace(-4e-2, -4e-3, 60), np.linspace(-1e-3, 2e-4, 12))
