@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from numpy.polynomial.legendre import Legendre
 
 from mdr_core import history, normal
+from mdr_core.profiles import Paraboloid
 from tests.core.comparison import profile_from
 from tests.core.test_history_paths import PROFILES
 from tests.core.test_laws import E_STAR, at_radius, cases, rescaled
@@ -249,3 +250,25 @@ def test_reversed_direction_is_the_mirror_image(
     assert np.array_equal(left.state.load, -right.state.load)
     for name in ("normal_force", "dissipated_energy", "tangential_energy"):
         assert np.array_equal(getattr(left, name), getattr(right, name)), name
+
+
+@pytest.mark.parametrize("samples", [1, 3, 7])
+def test_samples_of_a_step_into_full_slip_share_its_work(samples: int) -> None:
+    """Springs on the axis, to which rounding leaves a segment of 1e-17, are counted once."""
+    depth, radius, mu, e_star, g_star = 1.17e-4, 1.3e-3, 0.3, 3.3e6, 2.2e6
+    moved = 1.5 * mu * e_star / g_star * depth
+    path = history.solve(
+        Paraboloid(radius),
+        e_star,
+        g_star,
+        mu,
+        indentation_depth=depth,
+        tangential_displacement=[0.0, moved, -moved, moved],
+        samples_per_step=samples,
+    )
+    # Of springs that slip by 2 u - 2 (d - w) mu E*/G* under the friction mu E* (d - w).
+    a = np.sqrt(radius * depth)
+    work = 2 * moved * mu * e_star * 4 / 3 * a * depth
+    work -= 2 * (mu * e_star) ** 2 / g_star * 16 / 15 * a * depth**2
+    halves = path.dissipation.reshape(4, samples).sum(axis=1)[2:]
+    np.testing.assert_allclose(halves, work, rtol=1e-13, atol=0)
