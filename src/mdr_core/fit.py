@@ -192,9 +192,8 @@ def solve(
         place = ("indentation_depth", int(depth.argmax()))
         raise InputError(place, "lies beyond the end of the profile: give a longer one")
     model = _Model(profile, depth, force, tuple(fit), e_star, np.ones(depth.size, dtype=bool))
-    if "work_of_adhesion" in fit:
-        model = _adhesive(model)
-    return model.result(model.best(), noise, body_thickness, rtol)
+    model, found = _adhesive(model) if "work_of_adhesion" in fit else (model, model.best())
+    return model.result(found, noise, body_thickness, rtol)
 
 
 def _curve(indentation_depth: ArrayLike, normal_force: ArrayLike) -> tuple[Array, Array]:
@@ -227,10 +226,12 @@ def _require_points(touching: int, model: "_Model") -> None:
         raise InputError(("indentation_depth",), detail)
 
 
-def _adhesive(curve: "_Model") -> "_Model":
-    """Model of the states beyond the least force, and of the points after the pull-off.
+def _adhesive(curve: "_Model") -> "tuple[_Model, _Parameters]":
+    """Model of the states beyond the least force and of the points after the pull-off, and its fit.
 
-    The latter lie well below the pull-off depth that the former show, and before the largest jump.
+    The latter are all before the largest jump, if they fit the former within their noise; else
+    those that also lie well below the pull-off depth that the former show. The former alone leave
+    it open in noise, as offset, adhesion and contact point compensate.
     """
     order = np.argsort(curve.depth, kind="stable")
     depth, force = curve.depth[order], curve.force[order]
@@ -241,12 +242,23 @@ def _adhesive(curve: "_Model") -> "_Model":
         used = np.r_[:count, least + 1 : depth.size]
         return replace(curve, depth=depth[used], force=force[used], touches=used >= count)
 
-    found = without_others(0).best()
+    jump = int(np.argmin(np.diff(force[: least + 1]))) + 1 if least else 0
+    touching, whole = without_others(0), without_others(jump)
+    found = touching.best()
+    if not jump:
+        return touching, found
+    with suppress(InputError):
+        joint, free = whole.best(), touching.depth.size - len(curve.fit)
+        rounding = free * (_ROUNDING * float(np.abs(force).max())) ** 2
+        squares = max(touching.squares(found), rounding)
+        more = max(whole.squares(joint) - squares, 0.0)
+        if fdtrc(jump, free, more / jump / (squares / free)) > _FALSE_ALARM:
+            return whole, joint
     c = sqrt(2 * pi * found["work_of_adhesion"] / found["e_star"])
     pull_off = adhesion.Curve(curve.profile, c).least["indentation_depth"]
-    jump = int(np.argmin(np.diff(force[: least + 1]))) + 1 if least else 0
     after = int(np.searchsorted(depth, found["contact_point"] + _AFTER * pull_off))
-    return without_others(min(after, jump))
+    model = without_others(min(after, jump))
+    return model, model.best()
 
 
 def _forces(
@@ -318,6 +330,10 @@ class _Model:
             detail = "does not rise as on this profile: compression is positive, reverse its sign"
             raise InputError(("normal_force",), detail)
         return self.refined(start, *limits)
+
+    def squares(self, parameters: _Parameters) -> float:
+        """Return the sum of squares of the residuals."""
+        return float(np.sum(np.square(self.at(parameters)[0] - self.force)))
 
     def linear(self, reduced: Array) -> tuple[float, float, float]:
         """Return the least squares, modulus and offset for forces over E*."""
