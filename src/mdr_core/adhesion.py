@@ -350,10 +350,7 @@ def solve(
         validation.require_single_positive(("material", field), value)
     loads = (indentation_depth, normal_force, contact_radius)
     name, load = validation.only_one(("load",), dict(zip(CONTROLS, loads, strict=True)))
-    if not (np.size(load) and np.isfinite(load).all()):
-        raise InputError(
-            ("load", name), validation.FINITE if np.size(load) else "at least one load is needed"
-        )
+    validation.require_finite(("load", name), load)
     curve = Curve(profile, sqrt(2 * pi) * sqrt(work_of_adhesion) / sqrt(modulus))
     coordinate, retraction, states = _state(curve, name, load, modulus)
     at_pull_off = float(curve.retraction(curve.at_pull_off))

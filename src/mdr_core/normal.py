@@ -251,8 +251,6 @@ def solve(
     e_star = e_star if isinstance(e_star, float) else normal_modulus(e_star)
     loads = (indentation_depth, normal_force, contact_radius)
     name, load = only_one(("load",), dict(zip(CONTROLS, loads, strict=True)))
-    if load.size == 0:
-        raise InputError(("load", name), "at least one load is needed")
     spread = _over_cases(profile, e_star, name, load)
     coordinate = _coordinate(name, profile, e_star, spread)
     contact = NormalContact(profile, e_star, coordinate, rtol, name, material)

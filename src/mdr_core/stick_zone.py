@@ -48,8 +48,6 @@ def solve(
 
 def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
     """Direction and magnitude of the load, which is checked; a single sign 1 stands for all."""
-    if not given.size:
-        raise InputError(("tangential", name), "at least one load is needed")
     require_finite(("tangential", name), given)
     if extremes(given)[0] >= 0 or name == "stick_radius":
         return _POSITIVE, given

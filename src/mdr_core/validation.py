@@ -85,12 +85,18 @@ def first_index(bad: Flags) -> tuple[int, ...]:
 def only_one(
     path: tuple[str | int, ...], given: Mapping[str, ArrayLike | None]
 ) -> tuple[str, Array]:
-    """Return name and values of the one quantity that is given, or raise InputError at the path."""
+    """Return name and values of the one quantity that is given.
+
+    Raises InputError at the path for none or several of them, or without values.
+    """
     named = [(name, values) for name, values in given.items() if values is not None]
     if len(named) != 1:
         raise InputError(path, f"exactly one of {', '.join(given)} is needed")
-    name, values = named[0]
-    return name, as_numbers((*path, name), values)
+    name, given_values = named[0]
+    values = as_numbers((*path, name), given_values)
+    if not values.size:
+        raise InputError((*path, name), "at least one value is needed")
+    return name, values
 
 
 def single(path: tuple[str | int, ...], value: float) -> float:

@@ -20,7 +20,7 @@ from mdr_core.profiles.table_fit import fit_table
 from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
 from mdr_core.quadrature import composite_rule, in_order
 from mdr_core.typing import Array, Flags, Indices, Parameter
-from mdr_core.validation import as_numbers
+from mdr_core.validation import as_numbers, require_finite
 
 # Bound on the error of the sums over the pieces: several times the largest in the tests.
 _ROUNDING: Final = 2e-13
@@ -447,9 +447,7 @@ def _checked(r: Array, f: Array) -> tuple[Array, Array]:
     if r.ndim != 1 or f.shape != r.shape:
         raise InputError(("profile", "f"), f"has {f.size} values for {r.size} radii")
     for name, values in (("r", r), ("f", f)):
-        bad = ~np.isfinite(values)
-        if bad.any():
-            raise InputError(("profile", name, int(np.argmax(bad))), "must be finite")
+        require_finite(("profile", name), values)
     if np.unique(r).size < 3:
         raise InputError(("profile", "r"), "give at least three points with different radii")
     if np.ptp(f) == 0:

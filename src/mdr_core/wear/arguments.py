@@ -5,7 +5,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core.errors import InputError
 from mdr_core.fields import graded
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
@@ -22,8 +21,6 @@ def one_amplitude(displacement: ArrayLike | None, force: ArrayLike | None) -> tu
     """
     given = {"tangential_displacement": displacement, "tangential_force": force}
     name, values = only_one(("tangential",), given)
-    if not values.size:
-        raise InputError(("tangential", name), "at least one amplitude is needed")
     require_not_negative(("tangential", name), values)
     return name, values
 
