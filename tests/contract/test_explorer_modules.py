@@ -67,63 +67,11 @@ def test_tables_that_cannot_be_read_are_refused_with_the_line() -> None:
 
 
 STEEL = {"youngs_modulus": 2.1e11, "poissons_ratio": 0.3}
-PARABOLOID = {"kind": "paraboloid", "radius": 0.01}
-CONE = {"kind": "truncated_cone", "slope": 0.3, "flat_radius": 2e-4}
 SCAN = np.linspace(0, 6e-4, 25)
-TOPOGRAPHY = {"kind": "tabulated", "r": SCAN.tolist(), "f": (-50 * (SCAN - 3e-4) ** 2).tolist()}
 # Query, body, and its error or last warning in the units of the page.
-MESSAGES: list[tuple[str, dict[str, Any], str]] = [
-    (
-        "normal",
-        {"profile": CONE, "load": {"contact_radius": 1e-4}},
-        "the contact cannot be smaller than the flat, “Radius b of the flat” = 0.2 mm",
-    ),
-    (
-        "normal",
-        {"profile": CONE, "load": {"normal_force": 100}},
-        "“Maximum pressure” is infinite, at radius 0.2 mm",
-    ),
-    (
-        "normal",
-        {"profile": {"kind": "sphere", "radius": 0.01}, "load": {"contact_radius": 0.1}},
-        (
-            "the contact would extend beyond radius 10 mm, where the profile ends or ceases to be "
-            "admissible: reduce the load, or extend a table"
-        ),
-    ),
-    (
-        "normal",
-        {"profile": {"kind": "flat_punch", "radius": 1e-3}, "load": {"contact_radius": 1e-3}},
-        (
-            "the contact radius of a flat punch is its radius at every load: prescribe "
-            "“Indentation depth d” or “Normal force”"
-        ),
-    ),
-    (
-        "normal",
-        {"profile": {"kind": "paraboloid", "radius": 0}, "load": {"normal_force": 100}},
-        "must be positive",
-    ),
-    (
-        "subsurface",
-        {"profile": PARABOLOID, "load": {"normal_force": 2000}, "points": 20},
-        "the stresses meet Tresca's criterion under a normal force of 2 kN",
-    ),
-    (
-        # 3/2 pi w R.
-        "normal",
-        {"profile": PARABOLOID, "load": {"normal_force": -3}, "material": {"work_of_adhesion": 50}},
-        "is below the pull-off force, −0.0023562 kN: there is no contact",
-    ),
-    (
-        "normal",
-        {"profile": TOPOGRAPHY, "load": {"normal_force": 1}},
-        (
-            "the heights fall away from the axis: if r is the position on a scan, subtract that of "
-            "the axis, near 0.3 mm, and reverse the sign of the heights"
-        ),
-    ),
-]
+MESSAGES: list[tuple[str, dict[str, Any], str]] = json.loads(
+    (TABLES.parent / "page_messages.json").read_text("utf-8")
+)
 
 
 def message(client: Client, query: str, body: dict[str, Any]) -> str:

@@ -21,7 +21,6 @@ from tests.core.test_history_paths import DEPTH, FULL_SLIP, MATERIAL, PROFILES
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from mdr_core.profiles import Profile
 
 MU, E_STAR, G_STAR = MATERIAL.mu, MATERIAL.e_star, MATERIAL.g_star
 #: Converts tangential coordinates to displacements, and an integral of line loads to an energy.
@@ -278,34 +277,3 @@ def test_error_of_a_loose_tolerance_within_estimate(name: str, control: str) -> 
             bound = result.error_estimate + exact.error_estimate
             miss = np.max(np.abs(getattr(result, column) - values))
             assert miss <= bound * np.max(np.abs(values)), (column, rtol)
-
-
-def count_evaluations(monkeypatch: pytest.MonkeyPatch, kind: type[Profile]) -> list[int]:
-    """Number of coordinates in each evaluation of a profile's depth."""
-    counts: list[int] = []
-    plain = kind.depth
-
-    def depth(self: Profile, s: Any) -> Any:
-        counts.append(np.size(s))
-        return plain(self, s)
-
-    monkeypatch.setattr(kind, "depth", depth)
-    return counts
-
-
-@controls
-@pytest.mark.parametrize("name", ["power4", "sphere", "rounded-cone"])
-def test_cost_of_tolerance_and_load_steps(
-    name: str, control: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    counts = count_evaluations(monkeypatch, type(profile_from(PROFILES[name])))
-    taken = []
-    for steps, rtol in ((10, 1e-3), (10, 1e-10), (100, 1e-10)):
-        counts.clear()
-        result = solve(name, **random_path(name, control, steps, 7), rtol=rtol)
-        assert result.dissipated_energy[-1] > 0
-        taken.append((len(counts), sum(counts)))
-    # Seven more digits, and ten times as many load steps.
-    assert taken[1][1] <= 8 * taken[0][1]
-    assert taken[2][0] <= 10 * taken[1][0]
-    assert taken[2][1] <= 20 * taken[1][1]

@@ -64,12 +64,6 @@ def test_str_of_many_loads_is_short() -> None:
     assert max(map(len, repr(contact).splitlines())) < 100
 
 
-def test_step_in_full_stick_dissipates_nothing() -> None:
-    state = advance(advance(unloaded(*FRICTION), 1e-6, 0.0), 2e-6, 1e-8)
-    assert state.dissipation == 0
-    assert state.tangential_energy > 0
-
-
 @pytest.mark.long
 def test_impact_conserves_energy_and_rebounds_as_measured() -> None:
     path = ROOT / "examples" / "bouncing_sphere.py"

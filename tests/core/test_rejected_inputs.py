@@ -183,34 +183,3 @@ def test_contact_beyond_the_end_of_a_series_is_rejected_under_each_control() -> 
         with pytest.raises(InputError, match="ceases to be admissible") as raised:
             normal.solve(profile, 1.0, **{name: [most / 2, most * (1 + 1e-6)]})
         assert raised.value.path == ("load", name, 1)
-
-
-@pytest.mark.parametrize("count", [0, -1])
-def test_cycles_without_a_cycle_are_rejected(count: int) -> None:
-    with pytest.raises(InputError) as raised:
-        history.cycles(
-            Paraboloid(1.0),
-            1.0,
-            1.0,
-            0.5,
-            indentation_depth=1.0,
-            tangential_displacement=0.1,
-            count=count,
-        )
-    assert raised.value.path == ("history", "count")
-
-
-@pytest.mark.parametrize("load", ["indentation_depth", "normal_force", "contact_radius"])
-def test_loads_of_zero_are_accepted(load: str) -> None:
-    for given in (0.0, [0.0, 1.0]):
-        contact = normal.solve(Paraboloid(1.0), 1.0, **{load: given})
-        assert np.ravel(contact.normal_force)[0] == 0
-
-
-def test_normal_amplitude_is_at_most_the_mean() -> None:
-    given = {"indentation_depth": 1.0, "tangential_displacement": 0.1}
-    whole = history.cycles(Paraboloid(1.0), 1.0, 1.0, 0.5, normal_amplitude=1.0, **given)
-    assert whole.indentation_depth.min() == 0
-    with pytest.raises(InputError) as raised:
-        history.cycles(Paraboloid(1.0), 1.0, 1.0, 0.5, normal_amplitude=1.0000001, **given)
-    assert raised.value.path == ("history", "normal", "amplitude")

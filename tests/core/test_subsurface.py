@@ -94,20 +94,6 @@ def point_force(
     return np.array(normal_contact) + q * np.array(cerruti)
 
 
-@pytest.mark.parametrize("profile", [Paraboloid(2.0), Cone(0.2), RoundedPunch(0.5, 2.0)])
-def test_point_force_in_the_far_field(profile: Profile) -> None:
-    contact = tangential_contact(profile, 0.6)
-    rng = np.random.default_rng(1)
-    for far in (1e6, 1e9):
-        x, y, z = far * rng.normal(size=(3, 30))
-        z = np.abs(z)
-        result = np.array(stress(contact, x, y, z, poissons_ratio=0.3, body=2))
-        forces = float(contact.normal.normal_force), float(contact.tangential_force)
-        expected = point_force(x, y, z, 0.3, *forces)
-        # The next term is smaller by (a/r)^2.
-        assert np.abs(result - expected).max() < 1e-9 * np.abs(expected).max()
-
-
 POINTS = np.array([[0.3, 0.2, 0.6], [-0.9, 0.4, 0.5], [1.4, -0.3, 0.7], [0.05, 0.0, 1.2]])
 
 
@@ -244,39 +230,6 @@ def test_tractions_at_the_end_of_a_history(name: str) -> None:
     assert error[:-fronts].max() < 1e-9 * p.max()
     # The stress has a root in the distance from a slip front, and so in its rounding error.
     assert error[-fronts:].max() < 1e-7 * p.max()
-
-
-def test_residual_stress_after_the_tangential_force_is_removed() -> None:
-    """Mindlin and Deresiewicz 1953: tau = mu (p(a) - 2 p(b) + p(c)), b and c the slip fronts."""
-    contact = normal_contact(Paraboloid(2.0))
-    limit = FRICTION * float(contact.normal_force)
-    loads = {"normal_force": float(contact.normal_force), "tangential_force": [0.6 * limit, 0.0]}
-    loads["tangential_force"].insert(0, 0.0)
-    history = load_history.solve(Paraboloid(2.0), E_STAR, 2.6, FRICTION, **loads)
-    c, b = (1 - 0.6) ** (1 / 3), (1 - 0.3) ** (1 / 3)
-    assert history.slip_fronts == pytest.approx([c, b], rel=1e-12, abs=0)
-    place = np.array([0.3, 0.5, 0.9, 1.1]), 0.1, np.array([[0.0], [0.3]])
-    result = np.array(stress(history.state, *place, poissons_ratio=0.3, body=2))
-
-    def of(radius: float) -> np.ndarray:
-        one = normal.solve(Paraboloid(2.0), E_STAR, contact_radius=radius)
-        slides = tangential.solve(one, 2.6, FRICTION, tangential_displacement=100.0)
-        given = {"poissons_ratio": 0.3, "body": 2}
-        return np.array(stress(slides, *place, **given)) - np.array(stress(one, *place, **given))
-
-    alone = np.array(stress(contact, *place, poissons_ratio=0.3))
-    # The force returned to zero by slip of the opposite sign.
-    residual = of(1.0) - 2 * of(b) + of(c)
-    assert np.abs(result - alone + residual).max() < 1e-12 * np.abs(alone).max()
-    separated = load_history.solve(
-        Paraboloid(2.0),
-        E_STAR,
-        2.6,
-        FRICTION,
-        normal_force=[1.0, 0.0],
-        tangential_force=[0.1, 0.0],
-    )
-    assert not np.array(stress(separated.state, *place, poissons_ratio=0.3)).any()
 
 
 @pytest.mark.parametrize("stick", [0.0, 0.6])

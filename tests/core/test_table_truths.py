@@ -377,26 +377,6 @@ def test_yield_under_a_rounded_ball() -> None:
     assert expected == pytest.approx(26.933167805, rel=1e-5, abs=0)
 
 
-@pytest.mark.parametrize(
-    ("r", "f"),
-    [
-        ([0, 1, 2, 3], [0, 0.05, 0.05 - 1e-12, 0.45]),
-        ([0, 1, 2], [1e-10, 0.05, 0.2]),
-        ([-2, -1, 0, 1, 2], [0.2, 0.05, 0, 0.05, 0.2]),
-        ([2, 1, 0], [0.2, 0.05, 0]),
-        ([0, 1, 1, 2], [0, 0.05, 0.05, 0.2]),
-        ([0.5, 1, 2, 3], [0.0125, 0.05, 0.2, 0.45]),
-    ],
-    ids=["noise", "offset", "both sides", "descending", "repeated", "above 0"],
-)
-def test_forms_of_a_paraboloid(r: list[float], f: list[float]) -> None:
-    contact = solve(Tabulated(r, f), 100.0, normal_force=[1e-3, 1.0])
-    hertz = solve(Paraboloid(10.0), 100.0, normal_force=[1e-3, 1.0])
-    if f[2] != 0.05 - 1e-12:
-        np.testing.assert_allclose(contact.indentation_depth, hertz.indentation_depth, rtol=1e-6)
-    assert (contact.indentation_depth > 0).all()
-
-
 # Noise: what the table tells of itself.
 
 

@@ -393,22 +393,6 @@ def test_results_scale_with_units(control: str) -> None:
         assert getattr(new, name) == pytest.approx(getattr(old, name) * unit, rel=1e-5, abs=0)
 
 
-def test_doubled_wear_coefficient_halves_the_cycles() -> None:
-    contact = normal.solve(Paraboloid(1.0), E_STAR, indentation_depth=1.0)
-    slow, fast = (
-        evolution.solve(
-            contact,
-            G_STAR,
-            MU,
-            wear_coefficient=factor * WEAR,
-            cycles=np.array([100.0, 1000.0]) / factor,
-            tangential_displacement=0.2,
-        )
-        for factor in (1.0, 2.0)
-    )
-    assert fast.worn_volume == pytest.approx(slow.worn_volume, rel=1e-9, abs=0)
-
-
 def test_no_wear_without_slip() -> None:
     punch = normal.solve(FlatPunch(1.0), E_STAR, normal_force=1.0)
     ball = normal.solve(Paraboloid(1.0), E_STAR, indentation_depth=1.0)

@@ -203,22 +203,6 @@ def test_stick_zone_at_the_equator_leaves_no_room_for_wear() -> None:
     assert "profile ends" in failure.value.detail
 
 
-def test_grid_includes_every_edge() -> None:
-    wear = worn(
-        RoundedPunch(0.5, 1.7),
-        {"indentation_depth": 0.2},
-        {"tangential_displacement": [0.01, 0.05]},
-    )
-    radii = wear.grid(60)
-    assert radii.shape == (60,)
-    assert (np.diff(radii) > 0).all()
-    edges = [0.0, 0.5, float(wear.tangential_contact.normal.contact_radius)]
-    edges += [*wear.stick_radius.tolist(), *wear.wear_radius.tolist()]
-    assert set(edges) <= set(radii.tolist())
-    with pytest.raises(InputError, match="at least"):
-        wear.grid(5)
-
-
 def test_extreme_exponents() -> None:
     for exponent in (0.05, 0.2, 60.0, 200.0):
         profile = Power(1.0, exponent)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from mpmath import mp, mpf
 
+from tests.core.test_history_paths import DEPTH, MATERIAL, PROFILES
 from tests.oracles import slip_reference as slip
 from tests.oracles.history_reference import follow, history
-from tests.oracles.slip_reference import Material
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,22 +22,9 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.long
 
-MATERIAL = Material(3.7, 2.9, 0.37)
 #: Exact up to the quadratures of int g^2 dx.
 PROOF = mpf(10) ** -35
-PROFILES: dict[str, dict[str, Any]] = {
-    "paraboloid": {"kind": "paraboloid", "radius": 1.3},
-    "cone": {"kind": "cone", "slope": 0.3},
-    "power0.7": {"kind": "power", "coefficient": 0.7, "exponent": 0.7},
-    "rounded-punch": {"kind": "rounded_punch", "flat_radius": 0.6, "rounding_radius": 2.0},
-    "truncated-cone": {"kind": "truncated_cone", "flat_radius": 0.6, "slope": 0.3},
-    "sphere": {"kind": "sphere", "radius": 1.5},
-    "rounded-cone": {"kind": "rounded_cone", "slope": 0.3, "tip_radius": 1.7},
-    "flat-punch": {"kind": "flat_punch", "radius": 0.5},
-}
-DEPTH = 0.25
 DISSIPATED = "dissipated_energy"
-everywhere = pytest.mark.parametrize("name", PROFILES)
 few = pytest.mark.parametrize("name", ["paraboloid", "truncated-cone", "sphere", "flat-punch"])
 
 
@@ -155,23 +142,6 @@ def test_full_slip_dissipates_friction_times_sliding_distance(name: str) -> None
         square = at.depth * at.n / 2 - missing
         loop = 4 * force * mpf(amplitude) - 8 * (at.mu * at.e_star) ** 2 / at.g_star * square
         assert same(dissipated, loop)
-
-
-def test_cycle_is_the_area_of_its_curve() -> None:
-    """W = 8 int Phi du - 4 F0 u0 for the sphere, by quadrature of Eqs. (5.19), (5.20)."""
-    amplitude = 0.6 * full_slip_displacement(DEPTH)
-    with mp.workdps(slip.WORK_DIGITS):
-        at = slip.setting(PROFILES["sphere"], "indentation_depth", DEPTH, MATERIAL)
-        c = slip.stick_radius(at, "tangential_displacement", mpf(amplitude))
-        dissipated, force = cycle("sphere", amplitude)
-        with mp.workdps(50):
-
-            def density(x: mpf) -> mpf:
-                virgin = at.mu * at.e_star * (at.n - at.body.force(x))
-                return virgin * at.shift * at.body.dg(x)
-
-            area = mp.quad(density, [c, at.a])
-        assert mp.almosteq(dissipated, 8 * area - 4 * force * mpf(amplitude), mpf(10) ** -30)
 
 
 def virgin(at: slip.Setting, u: mpf) -> mpf:

@@ -18,7 +18,7 @@ from tests.oracles.reference import (
     quad_force,
     quad_g,
 )
-from tests.oracles.shapes import KINDS, Monomials, Shape, shape_of
+from tests.oracles.shapes import KINDS, Shape, shape_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -121,37 +121,6 @@ def test_condition_numbers_are_logarithmic_derivatives(name: str) -> None:
         narrow = mpf(10) ** -12
         work = (energy(shape, a * (1 + narrow)) - energy(shape, a)) / (narrow * energy(shape, a))
         assert mp.almosteq(rates["elastic_energy"], work, mpf(10) ** -9)
-
-
-def elliptic_pressure(b: mpf, big: mpf, a: mpf, r: mpf) -> mpf:
-    """p/E* of the truncated paraboloid for r < b."""
-    m = (r / b) ** 2
-    sine = mp.sqrt((a**2 - b**2) / (a**2 - r**2))
-    psi = mp.asin(sine)
-    first = mp.ellipf(psi, m) / b
-    second = b * (mp.ellipf(psi, m) - mp.ellipe(psi, m)) + a * sine
-    return (2 * second - b**2 * first) / (mp.pi * big)
-
-
-def power_pressure(c: mpf, n: mpf, a: mpf, r: mpf) -> mpf:
-    s = mp.sqrt(a**2 - r**2)
-    coefficient = Monomials([(c, n)]).equivalent_terms[0][0]
-    return n * coefficient / mp.pi * a ** (n - 2) * s * mp.hyp2f1(1, 1 - n / 2, 1.5, (s / a) ** 2)
-
-
-@pytest.mark.parametrize("ratio", [0.03, 0.5, 0.97])
-def test_closed_form_pressures(ratio: float) -> None:
-    with mp.workdps(QUAD_DIGITS):
-        a, b, big, t = mpf("1.25"), mpf("0.8"), mpf("1.9"), mpf("0.3")
-        r = a * ratio
-        cone = Monomials([(t, mpf(1))])
-        assert same(pressure(cone, r, a), t / 2 * mp.acosh(a / r))
-        for n in (mpf("0.2"), mpf("1.5"), mpf(2), mpf(4), mpf("7.3")):
-            shape = Monomials([(mpf("0.7"), n)])
-            assert same(pressure(shape, r, a), power_pressure(mpf("0.7"), n, a, r))
-        worn = shape_of({"kind": "truncated_paraboloid", "flat_radius": b, "radius": big})
-        if r < b:
-            assert same(pressure(worn, r, a), elliptic_pressure(b, big, a, r))
 
 
 @pytest.mark.parametrize("name", CHOSEN)

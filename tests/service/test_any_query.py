@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -312,28 +313,25 @@ def with_examples(test: Callable[..., None], examples: int = 150) -> Callable[..
     )(test)
 
 
-@with_examples
-@given(query=QUERIES)
-def test_normal_query(client: Client, query: dict[str, object]) -> None:
-    check(client, "/v1/normal", query, NormalAnswer)
+@pytest.mark.parametrize(
+    ("path", "queries", "answer", "examples"),
+    [
+        ("normal", QUERIES, NormalAnswer, 150),
+        ("tangential", TANGENTIAL, TangentialAnswer, 150),
+        ("stress", STRESSES, StressAnswer, 150),
+        ("stress", ENDS, StressAnswer, 150),
+        ("subsurface", SUBSURFACE, SubsurfaceAnswer, 100),
+        ("wear", LIMITS, WearAnswer, 150),
+        ("wear/evolution", wear_queries(), EvolutionAnswer, 8),
+    ],
+)
+def test_any_query(client: Client, path: str, queries: Any, answer: Any, examples: int) -> None:
+    @partial(with_examples, examples=examples)
+    @given(query=queries)
+    def holds(query: dict[str, object]) -> None:
+        check(client, f"/v1/{path}", query, answer)
 
-
-@with_examples
-@given(query=TANGENTIAL)
-def test_tangential_query(client: Client, query: dict[str, object]) -> None:
-    check(client, "/v1/tangential", query, TangentialAnswer)
-
-
-@with_examples
-@given(query=STRESSES)
-def test_stress_query(client: Client, query: dict[str, object]) -> None:
-    check(client, "/v1/stress", query, StressAnswer)
-
-
-@partial(with_examples, examples=100)
-@given(query=SUBSURFACE)
-def test_subsurface_query(client: Client, query: dict[str, object]) -> None:
-    check(client, "/v1/subsurface", query, SubsurfaceAnswer)
+    holds()
 
 
 @with_examples
@@ -346,24 +344,6 @@ def test_history_query(client: Client, query: dict[str, object]) -> None:
 @given(query=NONLINEAR_HISTORIES)
 def test_nonlinear_history_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/tangential/history", query, HistoryAnswer)
-
-
-@with_examples
-@given(query=ENDS)
-def test_stress_query_at_the_end_of_a_history(client: Client, query: dict[str, object]) -> None:
-    check(client, "/v1/stress", query, StressAnswer)
-
-
-@with_examples
-@given(query=LIMITS)
-def test_wear_limit_query(client: Client, query: dict[str, object]) -> None:
-    check(client, "/v1/wear", query, WearAnswer)
-
-
-@partial(with_examples, examples=8)
-@given(query=wear_queries())
-def test_wear_evolution_query(client: Client, query: dict[str, object]) -> None:
-    check(client, "/v1/wear/evolution", query, EvolutionAnswer)
 
 
 @partial(with_examples, examples=25)

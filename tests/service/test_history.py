@@ -188,18 +188,6 @@ def test_fields_at_the_end_equal_the_core(client: Client, kind: str, load_path: 
             assert document[name] == [[r if abs(r) < float("inf") else None for r in result]], name
 
 
-@pytest.mark.parametrize("load_path", PATHS)
-def test_grid_at_the_end_clusters_at_slip_fronts(client: Client, load_path: str) -> None:
-    asked = query(**history_of(*PATHS[load_path]), points=100, quantities=["shear_stress"])
-    document = client.post("/v1/stress", asked).json()
-    assert len(document["radius"]) == len(document["shear_stress"][0]) == 100
-    fronts = client.post(PATH, query(**history_of(*PATHS[load_path]))).json()["slip_fronts"]
-    # The rounding error of a stress is largest at a front, so the grid point lies just inside.
-    for front in fronts:
-        nearest = min(abs(radius / front - 1) for radius in document["radius"])
-        assert nearest < 1e-3
-
-
 def test_error_of_a_list_of_one_points_at_its_only_value(client: Client) -> None:
     """The one tangential force exceeds µ F_N at the end of the second step."""
     query = {

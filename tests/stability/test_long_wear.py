@@ -166,18 +166,6 @@ def test_naive_formula_fails(name: str) -> None:
     CURVES[name]().naive_fails(1e-3)
 
 
-def test_worn_volume_never_falls() -> None:
-    assert np.all(np.diff(worn().worn_volume) >= 0)
-
-
-def test_initial_wear_is_proportional_to_cycles() -> None:
-    result, big, mu = worn(), mpf(BIG), mpf(MU)
-    # g(c) = d - u_x/mu, Eq. (5.80).
-    a, c = mp.sqrt(big), mp.sqrt(big * (1 - mpf(0.5 * FULL) / mu))
-    each = 16 * mu**2 / (15 * big**2) * (a - c) ** 3 * (a * a + 3 * a * c + c * c)
-    assert result.worn_volume[1] == pytest.approx(float(each) * WEAR, rel=1e-3, abs=0)
-
-
 def test_error_of_the_limit_within_estimate() -> None:
     for end in ("thin", "onset"):
         worst = max(of_limit(end, name).ours.max() for name in ("wear_width", "worn_volume"))
