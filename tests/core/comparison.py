@@ -6,6 +6,7 @@ from decimal import Decimal
 from math import inf, isfinite, isinf
 from typing import TYPE_CHECKING, Any
 
+from mdr_core.normal import NormalContact, solve
 from mdr_core.profiles import KINDS, PowerTerm, Profile
 
 if TYPE_CHECKING:
@@ -36,6 +37,12 @@ def profile_from(fields: Mapping[str, Any]) -> Profile:
     if fields["kind"] == "series":
         given = {"terms": tuple(PowerTerm(**term) for term in given["terms"])}
     return KINDS[fields["kind"]](**given)
+
+
+def contact_of(case: Mapping[str, Any]) -> NormalContact:
+    """Return the normal contact of a case of a bank."""
+    load = {case["control"]: case["load"]}
+    return solve(profile_from(case["profile"]), case["e_star"], rtol=1e-13, **load)
 
 
 def bound_of(case: Mapping[str, Any], bound: float) -> float:

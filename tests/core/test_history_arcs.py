@@ -131,11 +131,8 @@ def test_normal_force_and_displacement_grow_together(name: str) -> None:
     with mp.workdps(12):
         energy = shape.over(dissipated, turn * (1 + mpf(10) ** -9), a2)
     for sign in (1, -1):
-        result = history.solve(
-            profile_from(PROFILES[name]),
-            E_STAR,
-            G_STAR,
-            MU,
+        result = solve(
+            name,
             normal_force=[float(i1) * E_STAR, float(i2) * E_STAR],
             tangential_displacement=[0.0, sign * float(shift) * COMPLIANCE],
         )
@@ -170,11 +167,8 @@ def test_depth_and_tangential_force_grow_together(name: str) -> None:
     with mp.workdps(12):
         energy = shape.over(dissipated, a1, turn)
     for sign in (1, -1):
-        result = history.solve(
-            profile_from(PROFILES[name]),
-            E_STAR,
-            G_STAR,
-            MU,
+        result = solve(
+            name,
             indentation_depth=[float(d1), float(d2)],
             tangential_force=[0.0, sign * float(rate * (d2 - d1)) * MU * E_STAR],
         )

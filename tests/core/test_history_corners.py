@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -396,23 +397,11 @@ def test_nothing_slips_where_the_loads_grow_in_the_ratio_of_friction(
     """Eq. (5.71) at equality: all springs are at their limit at all times, and none slips."""
     mu, e_star, g_star = 0.3, 1.1, 0.9
     loads = np.array([0.7, 1.9, 2.0, 3.1])
-    forces = history.solve(
-        profile,
-        e_star,
-        g_star,
-        mu,
-        normal_force=loads,
-        tangential_force=sign * mu * loads,
-        samples_per_step=samples,
-    )
-    displacements = history.solve(
-        profile,
-        e_star,
-        g_star,
-        mu,
+    solved = partial(history.solve, profile, e_star, g_star, mu, samples_per_step=samples)
+    forces = solved(normal_force=loads, tangential_force=sign * mu * loads)
+    displacements = solved(
         indentation_depth=loads / 10,
         tangential_displacement=sign * mu * e_star / g_star * loads / 10,
-        samples_per_step=samples,
     )
     for result in (forces, displacements):
         assert set(result.regime) == {"stick"}

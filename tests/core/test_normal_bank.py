@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from mdr_core.normal import solve
 from tests.core.batches import batched
-from tests.core.comparison import allowance, assert_each, bound_of, overstated, profile_from, wrong
+from tests.core.comparison import allowance, assert_each, bound_of, contact_of, overstated, wrong
 from tests.oracles import bank
 
 BOUND = 1e-13
@@ -15,8 +14,7 @@ OVERSTATED = 5.0
 
 
 def failures_of(case: dict[str, Any]) -> list[str]:
-    load = {case["control"]: case["load"]}
-    contact = solve(profile_from(case["profile"]), case["e_star"], rtol=1e-13, **load)
+    contact = contact_of(case)
     allowances = {name: allowance(condition) for name, condition in case["condition"].items()}
     bound = bound_of(case, BOUND)
     failures = overstated(

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from mdr_core import fields
-from mdr_core.normal import solve
 from tests.core.batches import batched
 from tests.core.comparison import (
     DERIVED_BREAK,
     allowance,
     assert_each,
-    profile_from,
+    contact_of,
     relative_error,
 )
 from tests.oracles import bank
@@ -19,7 +18,6 @@ from tests.oracles import bank
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from mdr_core.normal import NormalContact
     from mdr_core.typing import Array
 
 BOUND = 1e-12
@@ -33,11 +31,6 @@ def allowed(case: dict[str, Any], index: int) -> float:
     if case["profile"]["kind"] in DERIVED_BREAK:
         names += ["condition_radius"]
     return allowance(*(case[name][index] for name in names))
-
-
-def contact_of(case: dict[str, Any]) -> NormalContact:
-    load = {case["control"]: case["load"]}
-    return solve(profile_from(case["profile"]), case["e_star"], rtol=1e-13, **load)
 
 
 def misses(case: dict[str, Any], result: Array) -> Iterator[str]:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from mdr_core import normal, tangential
+from mdr_core import tangential
 from tests.core.batches import batched
 from tests.core.comparison import (
     LARGEST_ALLOWANCE,
     allowance,
     assert_each,
     bound_of,
+    contact_of,
     overstated,
-    profile_from,
     wrong,
 )
 from tests.oracles import bank
@@ -27,11 +27,8 @@ COMPUTED_FORCE = 8e-3
 
 
 def solved(case: dict[str, Any]) -> tangential.TangentialContact:
-    contact = normal.solve(
-        profile_from(case["profile"]), case["e_star"], rtol=1e-13, **{case["control"]: case["load"]}
-    )
     return tangential.solve(
-        contact,
+        contact_of(case),
         case["g_star"],
         case["friction_coefficient"],
         **{case["tangential_control"]: case["given"]},

@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import inf, isfinite
 from typing import TYPE_CHECKING, Any
 
-from mdr_core import normal
 from mdr_core.wear import limit
 from tests.core.batches import batched
 from tests.core.comparison import (
@@ -13,6 +12,7 @@ from tests.core.comparison import (
     allowance,
     assert_each,
     bound_of,
+    contact_of,
     overstated,
     profile_from,
     relative_error,
@@ -47,11 +47,8 @@ def sticks_up_to_cap(case: dict[str, Any]) -> bool:
 
 
 def solved(case: dict[str, Any], given: Any = None) -> limit.LimitingWear:
-    contact = normal.solve(
-        profile_from(case["profile"]), case["e_star"], rtol=1e-13, **{case["control"]: case["load"]}
-    )
     return limit.solve(
-        contact,
+        contact_of(case),
         case["g_star"],
         case["friction_coefficient"],
         **{case["amplitude"]: case["given"] if given is None else given},

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from mdr_core import history, normal
-from tests.core.comparison import EPS, profile_from, relative_error
+from mdr_core import history
+from tests.core.comparison import EPS, contact_of, relative_error
 from tests.core.test_history_bank import material, scaled_errors
 from tests.core.test_tangential_bank import solved as pushed
 from tests.core.test_wear_limit_bank import solved as worn
@@ -50,11 +50,7 @@ def measured(case: dict[str, Any], computed: Any, expected: dict[str, Any]) -> M
 
 
 def of_normal() -> list[Measured]:
-    def solved(case: dict[str, Any]) -> normal.NormalContact:
-        load = {case["control"]: case["load"]}
-        return normal.solve(profile_from(case["profile"]), case["e_star"], rtol=1e-13, **load)
-
-    return [measured(case, solved(case), case["expected"]) for case in bank.load("normal")]
+    return [measured(case, contact_of(case), case["expected"]) for case in bank.load("normal")]
 
 
 def of_tangential() -> list[Measured]:
