@@ -1,4 +1,4 @@
-"""Commands of `mdr`: arguments, help, and lazy imports."""
+"""`mdr` would refuse valid arguments, start slowly, or help with what it has not."""
 
 import json
 import os

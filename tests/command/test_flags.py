@@ -1,4 +1,4 @@
-"""Requests by options, files for responses, the list of profiles, and completion."""
+"""Options, files or the list of profiles of `mdr` would give another query than the JSON."""
 
 import json
 import math

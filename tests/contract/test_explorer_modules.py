@@ -1,4 +1,4 @@
-"""Modules of the explorer that need no browser."""
+"""The explorer would compute, name or link otherwise than the service."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""Every format of `/v1/subsurface` for loads and load histories, and the requests of its page."""
+"""A format of `/v1/subsurface`, or a request of its page, would not be answered."""
 
 from __future__ import annotations
 

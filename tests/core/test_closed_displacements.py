@@ -1,4 +1,4 @@
-"""Closed-form displacements outside a contact against their integral at 40 digits."""
+"""Closed-form displacements outside a contact would differ from their integral."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Maximum pressure and shear stress of a contact."""
+"""The maximum of a field would be below one of its values, or lie elsewhere."""
 
 from math import acosh, cosh, hypot, inf, pi, sqrt
 from typing import Any

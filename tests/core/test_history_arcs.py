@@ -1,4 +1,4 @@
-"""Histories under mixed control: depth with tangential force, or normal force with displacement.
+"""Histories under mixed control would not follow the arcs between their loads.
 
 Two load steps are known up to integrals, which mpmath evaluates; all others must satisfy the energy
 balance. Chords approximate the arcs: the estimate bounds their error and is at most 1e-5, as

@@ -1,4 +1,4 @@
-"""Cycles and random paths of every stored case, by the cycle solver and by the general solver."""
+"""Cycles or random paths would miss the stored references, or two solvers would differ."""
 
 from __future__ import annotations
 

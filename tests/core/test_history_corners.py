@@ -1,4 +1,4 @@
-"""Histories with a closed-form solution, each under the controls that make it exact."""
+"""Histories with a closed form would miss it under one of the exact controls."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""General laws of histories, on pseudorandom profiles and paths (fixed seed)."""
+"""Histories would break a law of friction, energy, symmetry or units."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Single tangential loads: histories against the tangential query, cycles against a quarter."""
+"""A single load would differ as a history, as a tangential query and as a cycle."""
 
 from __future__ import annotations
 

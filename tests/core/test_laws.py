@@ -1,4 +1,4 @@
-"""General laws of the normal problem, on pseudorandom profiles (fixed seed)."""
+"""Normal contacts would break a law of energy, order, inversion or units."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""No unnecessary computation, by counting evaluations.
+"""A query would compute more than its results need.
 
 A looser tolerance never costs more, closed forms are used wherever they exist, and results that are
 not requested are not computed.

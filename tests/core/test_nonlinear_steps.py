@@ -1,4 +1,4 @@
-"""Load steps that are nonlinear in depth and displacement, against many straight steps."""
+"""A nonlinear load step would differ from many straight steps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Depth, force and radius of every stored case, under every control."""
+"""Depth, force or radius would miss the stored references under one of the controls."""
 
 from __future__ import annotations
 

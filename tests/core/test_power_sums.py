@@ -1,4 +1,4 @@
-"""Power series at the limits of exponents and coefficients, and their cancellation."""
+"""Series with extreme exponents, or with terms that cancel, would lose digits unnoticed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pressure at stored radii: on the axis, at the edge and on both sides of each break."""
+"""Pressure would miss the stored references on the axis, at the edge or at a break."""
 
 from __future__ import annotations
 

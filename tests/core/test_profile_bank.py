@@ -1,4 +1,4 @@
-"""f, f', g and g' of every kind at stored radii, on both sides of each break."""
+"""f, f', g or g' of a kind would miss the stored references at or beside a break."""
 
 from __future__ import annotations
 

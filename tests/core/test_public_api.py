@@ -1,4 +1,4 @@
-"""Public names of `mdr_core`, readable results, and time stepping with load states."""
+"""A public name would be missing, a result unreadable, or stepping by states wrong."""
 
 import inspect
 import pydoc

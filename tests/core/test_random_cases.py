@@ -1,4 +1,4 @@
-"""Random contacts biased towards cancellation, a few of each kind."""
+"""Random contacts biased towards cancellation would lose digits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Regressions of the core, each reduced to its smallest example."""
+"""A mended defect of the core would be back."""
 
 from typing import Any
 

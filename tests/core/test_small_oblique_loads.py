@@ -1,4 +1,4 @@
-"""Tangential loads far smaller than friction, under normal loads that change with them."""
+"""Loads far smaller than friction would be lost beside the normal load."""
 
 import numpy as np
 import pytest

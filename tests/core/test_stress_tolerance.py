@@ -1,4 +1,4 @@
-"""Relative error of stresses at every tolerance, next to every singularity."""
+"""Stresses would miss their tolerance next to a singularity."""
 
 from __future__ import annotations
 

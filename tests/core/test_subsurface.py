@@ -1,4 +1,4 @@
-"""Subsurface stresses, against closed forms of the literature and laws of mechanics."""
+"""Stresses beneath the surface would miss closed forms, balance or their far field."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Subsurface stresses against the stored references, half of them next to an edge."""
+"""Stresses beneath the surface would miss the stored references, mainly at edges."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Largest stresses and the onset of yield, against values from the literature."""
+"""Largest stresses or the onset of yield would differ from the literature."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sweeps over many cases: results equal those of single cases."""
+"""A case in a sweep would have other results than alone."""
 
 from typing import Any
 

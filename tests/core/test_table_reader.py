@@ -1,4 +1,4 @@
-"""Tables as instruments write them, see `tests/data/tables`."""
+"""A table as an instrument writes it, in `tests/data/tables`, would be read wrongly."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Tables against the bodies that they sample, never against an interpolant of their points."""
+"""Tables would miss the body that they sample by more than their error estimate."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""General laws of partial slip on pseudorandom profiles (fixed seed), and limiting cases."""
+"""Partial slip would break a law of energy, order, symmetry or units."""
 
 from __future__ import annotations
 

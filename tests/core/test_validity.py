@@ -1,4 +1,4 @@
-"""Validity warnings, against figures from the literature."""
+"""A warning of validity would be missing, or contradict figures from the literature."""
 
 from __future__ import annotations
 

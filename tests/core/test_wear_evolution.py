@@ -1,4 +1,4 @@
-"""Wear over the cycles: general laws, limiting state, and an independent explicit scheme."""
+"""Wear would break a general law, miss its limit or differ from an explicit scheme."""
 
 from __future__ import annotations
 

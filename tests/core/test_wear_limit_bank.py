@@ -1,4 +1,4 @@
-"""The limit of fretting wear against the stored bank, for every kind and pair of controls."""
+"""The limit of fretting wear would miss the stored references for a kind or control."""
 
 from __future__ import annotations
 

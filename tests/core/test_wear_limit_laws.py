@@ -1,4 +1,4 @@
-"""Laws of the wear limit: the book's closed forms, a fixed point, and inequalities."""
+"""The wear limit would miss the book's closed forms or not be a fixed point."""
 
 from __future__ import annotations
 

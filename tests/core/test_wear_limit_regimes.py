@@ -1,4 +1,4 @@
-"""Limiting states without wear, with wear in full slip, and without a finite limit."""
+"""Stick, full slip or endless wear would not be told from a finite limit."""
 
 from __future__ import annotations
 

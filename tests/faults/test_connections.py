@@ -1,4 +1,4 @@
-"""Connections: accepted together, and kept or closed after failed requests."""
+"""A connection would not be accepted, or be kept after a request that spoils it."""
 
 import asyncio
 import http.client

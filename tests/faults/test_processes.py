@@ -1,4 +1,4 @@
-"""Processes that end, stop or fail to start while requests are in flight."""
+"""A process that ends, stops or fails to start would cost more than its own request."""
 
 import asyncio
 import http.client

@@ -1,4 +1,4 @@
-"""Limits of the HTTP protocol: headers, time, pipelining, upgrades, and slow clients."""
+"""Headers, pipelining, upgrades or slow clients would exceed the limits of the protocol."""
 
 import http.client
 import json

@@ -1,4 +1,4 @@
-"""Start and shutdown of the service: signals, settings, ports."""
+"""The service would start on wrong settings, or end without its answers."""
 
 import http.client
 import json

@@ -1,4 +1,4 @@
-"""Consistency of the banks: ids, sources, coverage, and a recomputed sample."""
+"""A bank would be incomplete or unsourced, or differ from its own generator."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bodies of the tables: depth and force are integrals of f', which is the slope of f."""
+"""Depth and force of a body of the tables would not be integrals of its slope."""
 
 from __future__ import annotations
 

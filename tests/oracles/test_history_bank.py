@@ -1,4 +1,4 @@
-"""Consistency of the banks of histories: ids, sources, coverage, and a recomputed sample."""
+"""The banks of histories would be incomplete, or differ from their generator."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Closed form = quadrature of f', for every kind, below and above each break, to 35 digits."""
+"""A closed form of the reference would differ from quadrature of f', at or beside a break."""
 
 from __future__ import annotations
 

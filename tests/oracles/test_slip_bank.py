@@ -1,4 +1,4 @@
-"""Consistency of the banks of partial slip: coverage, and a recomputed sample."""
+"""The banks of partial slip would be incomplete, or differ from their generator."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Slip reference against closed forms of the chapter and direct quadrature."""
+"""The slip reference would miss closed forms of the chapter or direct quadrature."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Consistency of the bank of wear limits: ids, sources, coverage, and a recomputed sample."""
+"""The bank of wear limits would be incomplete, or differ from its generator."""
 
 from __future__ import annotations
 

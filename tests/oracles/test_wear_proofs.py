@@ -1,4 +1,4 @@
-"""Wear reference against the book's equations and direct quadrature."""
+"""The wear reference would miss the book's equations or direct quadrature."""
 
 from __future__ import annotations
 

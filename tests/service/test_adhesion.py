@@ -1,4 +1,4 @@
-"""Adhesive contacts by HTTP: the numbers of the core, and rejections that say where and why."""
+"""Adhesion over HTTP would differ from the core, or errors point elsewhere."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Number of source files that a request passes, and requests that need no thread."""
+"""A request would pass more source files than documented, or take a thread needlessly."""
 
 import asyncio
 import json

@@ -1,4 +1,4 @@
-"""Work that the event loop leaves to compute processes, or does once."""
+"""The event loop would do work of compute processes, or do it twice."""
 
 import json
 

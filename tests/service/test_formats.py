@@ -1,4 +1,4 @@
-"""Response formats: CSV tables, SVG plots, and rejection of unknown media types."""
+"""A table or picture would be malformed, or an unknown media type accepted."""
 
 import csv
 import io

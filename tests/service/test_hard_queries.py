@@ -1,4 +1,4 @@
-"""Regressions: queries that once caused an internal error, a wrong result or a long run time."""
+"""A query that once failed, erred or ran long would do so again."""
 
 import json
 from pathlib import Path

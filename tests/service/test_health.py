@@ -1,4 +1,4 @@
-"""Readiness: a compute process solves a contact with a known answer."""
+"""A service whose compute processes do not compute would say that it is ready."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Log: lines of JSON on standard error, which are lost where nobody reads them."""
+"""A log line would not be JSON, or a lost reader of the log would stop the service."""
 
 import json
 import os

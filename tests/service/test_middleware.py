@@ -1,4 +1,4 @@
-"""Middleware between server and application: long bodies, errors and shutdown."""
+"""Long bodies, errors or shutdown would pass the middleware unanswered."""
 
 import asyncio
 import json

@@ -1,4 +1,4 @@
-"""Content of the pictures: the numbers of the response, their names and units, at any size."""
+"""A picture would show other numbers, names or units than the response."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Queries that run on the event loop, by their kind and size, and bounds of sizes."""
+"""A long query would block the event loop, or a size exceed its bound."""
 
 import json
 from time import thread_time

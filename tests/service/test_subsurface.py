@@ -1,4 +1,4 @@
-"""Subsurface stresses over HTTP: the core's results, textbook values, formats, rejections."""
+"""Subsurface stresses over HTTP would differ from the core, or errors point elsewhere."""
 
 from __future__ import annotations
 

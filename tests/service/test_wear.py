@@ -1,4 +1,4 @@
-"""Wear over HTTP: the core's digits, requested quantities only, and rejections."""
+"""Wear over HTTP would differ from the core, or give quantities not requested."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Compute processes: time limits, queue, and processes that end, stop or fail to start."""
+"""Time limits, queue or ends of compute processes would cost other requests."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""Stresses towards the surface, edges, axis and far away, beside a plain rule of 100 nodes."""
+"""Stresses towards surface, edges, axis or far away would lose digits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Error estimates in partial slip for bodies with two very different length scales.
+"""Error estimates would fail for bodies with two very different lengths.
 
 The bodies have very flat caps, tips with steep flanks, or contact edges within a few rounding
 errors of a flat. The estimate must cover the rounding error of the loads under any control.

@@ -1,4 +1,4 @@
-"""Power-law profiles with small and large exponents, n -> 0 and n -> infinity."""
+"""Powers with exponents n -> 0 and n -> infinity would lose digits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Extreme units: nanometres to thousands of kilometres, pascals to terapascals.
+"""Nanometres to thousands of kilometres, pascals to terapascals would lose digits.
 
 The core has no intrinsic scale, so results must not depend on units. The naive root finders stop at
 an absolute tolerance, which introduces one.

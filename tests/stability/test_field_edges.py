@@ -1,4 +1,4 @@
-"""Fields next to edges that follow from a load and carry its rounding error."""
+"""Fields next to edges that follow from a load would err by more than its rounding."""
 
 from __future__ import annotations
 

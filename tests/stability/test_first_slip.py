@@ -1,4 +1,4 @@
-"""Incipient slip, c -> a: the slip annulus is narrower than the rounding error of its radius."""
+"""Incipient slip, c -> a: an annulus below the rounding error of a would be lost."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Edge of a flat, b -> a and b -> 0: the annulus is narrower than the rounding error of a."""
+"""Edge of a flat, b -> a and b -> 0: an annulus below the rounding error of a would be lost."""
 
 from __future__ import annotations
 

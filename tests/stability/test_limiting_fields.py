@@ -1,4 +1,4 @@
-"""Fields of the limiting state of wear next to the stick edge, where its rounding error counts."""
+"""Fields of the limiting wear would err beside the stick edge unnoticed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Histories of up to 100,000 steps: errors do not accumulate."""
+"""Errors of histories of up to 100,000 steps would accumulate."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Limits of wear: annuli from the narrowest to full slip, and up to 1e12 cycles."""
+"""Wear from the narrowest annulus to full slip, up to 1e12 cycles, would miss its limit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Near full slip, c -> 0: the stick radius is ill-conditioned with respect to the load."""
+"""Near full slip, c -> 0: an ill-conditioned stick radius would pass as exact."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sphere up to its equator, a -> R, and down to its paraboloid limit, a -> 0."""
+"""Sphere, a -> R and a -> 0: digits would be lost at equator or paraboloid limit."""
 
 from __future__ import annotations
 

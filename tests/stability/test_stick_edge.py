@@ -1,4 +1,4 @@
-"""Stick edge, r -> c from both sides: traction like a square root, slip like a power of 3/2."""
+"""Stick edge, r -> c: root of traction or power 3/2 of slip would lose digits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The axis, r -> 0: unbounded logarithms and powers, and their finite differences."""
+"""The axis, r -> 0: unbounded logarithms and powers would lose digits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Wear fields over the cycles: true error against a fine reference run, and error estimate."""
+"""Wear fields over the cycles would err by more than their estimate."""
 
 from __future__ import annotations
 

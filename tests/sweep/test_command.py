@@ -1,4 +1,4 @@
-"""Arguments, input and output of the command `mdr sweep`."""
+"""Arguments, input or output of `mdr sweep` would be refused or mistaken."""
 
 import csv
 import datetime as dt
