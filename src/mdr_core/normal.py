@@ -278,7 +278,7 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
         with np.errstate(all="ignore"):
             depth, force, a = (getattr(contact, result) for result in CONTROLS)
             # An energy may underflow, but not overflow.
-            results = a, a * a, depth, force, np.maximum(depth * force, 1.0)
+            results = coordinate, a, a * a, depth, force, np.maximum(depth * force, 1.0)
         # A prescribed radius may be that of a flat, which is in contact without a load.
         loaded = coordinate > 0 if name == "contact_radius" else load > 0
         require_representable(("load", name), loaded, *results)

@@ -62,6 +62,10 @@ def test_error_of_a_sweep_names_a_single_radius() -> None:
         (profiles.Series((profiles.PowerTerm(1.0, 0.05),)), 1.0, {"indentation_depth": 1e-20}),
         (profiles.Series((profiles.PowerTerm(1.0, 0.05),)), 1.0, {"indentation_depth": 1e50}),
         (profiles.Paraboloid(1e-50), 1e50, {"contact_radius": 1e50}),
+        # The distance of the edge from the flat, half of the square of the load, has few digits.
+        (profiles.TruncatedParaboloid(1.0, 1.0), 1.0, {"indentation_depth": 1e-160}),
+        (profiles.TruncatedParaboloid(1.0, 1.0), 1.0, {"normal_force": 1e-157}),
+        (profiles.TruncatedCone(1.0, 1.0), 1.0, {"indentation_depth": 1e-160}),
     ],
 )
 def test_overflowing_results_are_rejected(
