@@ -434,6 +434,36 @@ def test_data_error_covers_the_noise() -> None:
 
 
 @pytest.mark.every(2)
+@pytest.mark.parametrize("count", [3, 4, 5, 6, 8, 12, 20])
+def test_data_error_of_few_exact_points(count: int) -> None:
+    """Bodies that a few points leave open are within twice the estimate."""
+    covered = []
+    for body in (BODIES[name] for name in SMOOTH):
+        for start in (0.0, 0.3, 1.0):
+            r = body.end * np.linspace(start / count, 1.0, count)
+            a = body.end * np.array([0.4, 0.7, 0.95])
+            contact = solve(Tabulated(r, body.f(r)), 1.0, contact_radius=a)
+            expected = np.array([body.depth(each) for each in a])
+            missed = np.abs(contact.indentation_depth / expected - 1)
+            covered += (missed <= np.maximum(2 * np.asarray(contact.data_error), 1e-9)).tolist()
+    assert np.mean(covered) >= 0.9
+
+
+@pytest.mark.parametrize("count", [3, 4, 5, 6, 12, 50])
+@pytest.mark.parametrize("grading", [1, 2])
+def test_points_of_a_cone_tell_its_tip(count: int, grading: int) -> None:
+    r = np.linspace(0.0, 1.0, count) ** grading
+    contact = solve(Tabulated(r, r), 1.0, contact_radius=0.55)
+    assert float(contact.indentation_depth) == pytest.approx(0.55 * np.pi / 2, rel=1e-9, abs=0)
+    assert float(contact.maximum_pressure) == np.inf
+
+
+@pytest.mark.parametrize("count", [8, 12, 25, 101])
+def test_points_of_smooth_bodies_show_no_tip(count: int) -> None:
+    for body in (BODIES[name] for name in SMOOTH):
+        assert not Tabulated(*sampled(body, count)).infinite_pressure_radii
+
+
 @pytest.mark.parametrize("name", ["truncated cone", "rounded punch"])
 def test_data_error_beyond_a_declared_break(name: str) -> None:
     """A jump of slope or curvature that is in error is made up for by the spline."""

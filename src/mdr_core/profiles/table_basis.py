@@ -11,6 +11,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import BSpline, PPoly
 from scipy.linalg import solve_triangular
+from scipy.sparse.linalg import spsolve
 
 from mdr_core.abel.slope_pieces import heights
 from mdr_core.profiles.table_points import TablePoints
@@ -72,7 +73,7 @@ class TableBasis:
     """
 
     def __init__(self, points: TablePoints, knots: Array) -> None:
-        self.degree = k = min(max(points.x.size - 2 - 2 * len(points.breaks), 1), _DEGREE)
+        self.degree = k = min(max(points.x.size - 2 - 2 * len(points.breaks), 2), _DEGREE)
         self.points, self.knots = points, knots
         self.t = np.concatenate([[0.0] * k, knots, [1.0] * k])
         self.size = self.t.size - k - 1
@@ -108,34 +109,33 @@ class TableBasis:
             rows = np.diff(rows, axis=0) * ((k - o + 1) / span)[:, None]
         return rows
 
-    def derivative(self, order: int) -> Array:
-        """Coefficients of a derivative, weighted by the root of the support of its splines."""
-        return self.padded(self._weighted(order))
+    def derivative(self, order: int, *, met: bool) -> Array:
+        """Coefficients of a derivative, weighted by the root of the support of its splines.
 
-    def _weighted(self, order: int) -> Array:
-        inner, degree = self.t[order : self.t.size - order], self.degree - order
-        support = (inner[degree + 1 :] - inner[: self.size - order]) / (degree + 1)
-        return self._differences(order) * np.sqrt(support)[:, None]
+        If heights are `met`, weighted as differences: by that power of the spacing around.
+        """
+        return self.padded(self._weighted(order, met=met))
 
-    def by_roughness(self, order: int, *, sharp: bool) -> tuple[Array, Array]:
+    def _weighted(self, order: int, *, met: bool) -> Array:
+        beside = int(met)
+        inner, count = self.t[order - beside :], self.degree - order + 1 + 2 * beside
+        support = (inner[count : count + self.size - order] - inner[: self.size - order]) / count
+        return self._differences(order) * support[:, None] ** (order if met else 0.5)
+
+    def by_roughness(self, order: int, *, met: bool, sharp: bool) -> tuple[Array, Array]:
         """Coefficients (columns, n) of what has no derivative of this order, and of the others.
 
         Each of the others has one coefficient of the weighted derivative that is 1.
         """
-        k, inner = self.degree, sliding_window_view(self.t[1:-1], self.degree)
-        pairs = np.square(inner.sum(axis=1)) - np.square(inner).sum(axis=1)
-        powers = np.stack([np.ones(self.size), self.places, pairs / max(k * (k - 1), 1)])
-        smooth = self.padded(powers[0 if sharp else 1 : order])
+        matrix = BSpline.design_matrix(self.places, self.t, self.degree)
+        powers = np.arange(0 if sharp else 1, order)
+        smooth = self.padded(
+            spsolve(matrix.tocsc(), self.places[:, None] ** powers).reshape(self.size, -1).T
+        )
         explicit = np.eye(self.heights.shape[1])[self.size - 1 : -1]
-        triangle = np.vstack([np.eye(order, self.size), self._weighted(order)])
+        triangle = np.vstack([np.eye(order, self.size), self._weighted(order, met=met)])
         rough = solve_triangular(triangle, np.eye(self.size)[:, order:], lower=True)
         return np.vstack([smooth, explicit]).T, self.padded(rough.T).T
-
-    def jumps(self) -> Array:
-        """Jumps of the last derivative at the inner knots, times its power of their spacing."""
-        spacing = (self.knots[2:] - self.knots[:-2]) / 2
-        steps = np.diff(self._differences(self.degree), axis=0)
-        return self.padded(steps * spacing[:, None] ** self.degree)
 
     def spline(self, coefficients: Array) -> BSpline:
         """Slope, or several, of coefficients over all columns."""

@@ -1,41 +1,41 @@
 """Equivalent profile of a table: the smoothest slope g' >= 0 that the points allow.
 
 The slope is a quintic spline in x/R, with the closed images of jumps of slope and curvature at
-declared breaks. Heights that a spline of least roughness meets are interpolated. Otherwise they are
-taken as measured: generalised cross-validation, or a stated uncertainty, decides how much of their
-scatter is noise, and a non-negative least-squares problem keeps the profile admissible.
+declared breaks, of least roughness and misfit. Heights without noise are met. For the others
+generalised cross-validation, or a stated uncertainty, decides how much of their scatter is noise. A
+non-negative least-squares problem keeps the profile admissible.
 
 Source: notes, §5.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from scipy.interpolate import BSpline
 from scipy.linalg import qr_multiply, solve_triangular
 from scipy.optimize import nnls
-from scipy.sparse.linalg import spsolve
 
 from mdr_core.errors import InputError
 from mdr_core.profiles.table_basis import TableBasis, TableFit, root_mean_square
 from mdr_core.profiles.table_points import ROUNDED, TablePoints, cleaned, off_axis, scatter
 from mdr_core.typing import Array
 
-# Derivative of the slope whose mean square is the roughness of measured heights: a parabola has
-# none.
-_ROUGH: Final = 3
-# Largest numbers of knots, for heights that are met and for heights that are measured.
-_KNOTS, _KNOTS_OF_MEASURED = 200, 80
+# Derivative of the slope whose mean square is the roughness: of measured heights, for which a
+# parabola has none, and of heights that are met.
+_ROUGH, _ROUGH_OF_EXACT = 3, 5
+# Largest number of knots by that derivative, and weights of the roughness that are tried, over the
+# one that halves the smoothest bend.
+_KNOTS: Final = {_ROUGH: 80, _ROUGH_OF_EXACT: 200}
+_WEIGHTS: Final = {
+    _ROUGH: 10.0 ** np.arange(-14, 6.1, 0.25),
+    _ROUGH_OF_EXACT: 10.0 ** np.arange(-30, -7.9, 0.25),
+}
 # Number of radii up to which cross-validation has too few points to tell noise.
 _FEW: Final = 12
 # Weight of a degree of freedom in cross-validation, against overfitting. Source: kim-gu.
 _GCV: Final = 1.2
 # Part of the possible degrees of freedom above which no noise is found.
 _NO_NOISE: Final = 0.8
-# Weights of the roughness that are tried, over the one that halves the smoothest bend.
-_WEIGHTS: Final = 10.0 ** np.arange(-14, 6.1, 0.25)
 # Relative difference of the scores of cross-validation that is none.
 _EQUAL_SCORES: Final = 1e-6
 # Increase of the score, times the number of points, up to which a weight is plausible: of a
@@ -43,17 +43,15 @@ _EQUAL_SCORES: Final = 1e-6
 _PLAUSIBLE: Final = 2.0
 # Part of the largest misfit below which few points leave a slope without roughness open.
 _OPEN: Final = 1e-8
-# Weight of the points against the roughness of an interpolant.
-_HEAVY: Final = 1e6
-# Factor by which a sharp tip has to lower the roughness of an interpolant at the first knots to be
-# believed, and variances of the noise by which it has to lower the sum of squares.
-_SHARPER, _TIP_KNOTS, _SHARPER_MEASURED = 10.0, 4, 12.0
+# Factor by which a sharp tip has to lower the roughness of heights that are met, and variances of
+# the noise by which it has to lower the sum of squares, to be believed.
+_SHARPER, _SHARPER_MEASURED = 100.0, 12.0
 # Lowest g'/x, over that of the paraboloid through the last point: g increases strictly.
 _FLOOR: Final = 1e-9
-# Part of the largest slope that keeps the slope of a flat positive.
+# Lowest g'/x where heights are met.
 _TINY: Final = 1e-15
-# Part of the largest slope up to which a negative one of an interpolant is rounding error.
-_NEGATIVE: Final = 1e-9
+# Rounding error of heights over their range.
+_EXACT: Final = 1e-15
 # Deviation from the points, root mean square over the height, from which the shape has no contact
 # area that is a single disc.
 _NO_DISC: Final = 0.025
@@ -77,14 +75,10 @@ def fit_table(
     InputError : points of no body whose contact area is a single disc.
     """
     points = cleaned(r, f, breaks)
-    if uncertainty is None:
-        exact = points.x.size <= _FEW or _has_no_noise(points)
-    else:
-        exact = uncertainty == 0
-    if exact:
-        found = _interpolated(points)
-    else:
-        found = _measured(points, uncertainty and uncertainty / points.scale[1])
+    if uncertainty is None and (points.x.size <= _FEW or _has_no_noise(points)):
+        uncertainty = 0.0
+    order = _ROUGH_OF_EXACT if uncertainty == 0 else _ROUGH
+    found = _nearest(points, uncertainty and uncertainty / points.scale[1], order)
     if found.rms > _NO_DISC * points.scale[1]:
         largest, radius = found.largest
         advice = off_axis(r, f)
@@ -106,68 +100,38 @@ def _knots(points: TablePoints, most: int) -> Array:
     return x
 
 
-def _interpolated(points: TablePoints) -> TableFit:
-    """Return the interpolant of least roughness, or the nearest fit if that is not admissible."""
-    basis = TableBasis(points, _knots(points, _KNOTS))
-    coefficients = _least_roughness(basis)
-    # A flat is flat up to rounding errors: g increases there too.
-    splines, largest = coefficients[: basis.size - 1], np.abs(coefficients).max()
-    rounded = (splines <= 0) & (splines > -_NEGATIVE * largest)
-    splines[rounded] = _TINY * largest * basis.places[1:][rounded]
-    jumps = coefficients[basis.size - 1 : -2 : 2]
-    jumps[np.abs(jumps) < _NEGATIVE * largest] = 0.0
-    # Where the slope falls by a step, g' is infinite and negative beyond it.
-    falls = min(jumps.min(initial=0.0), coefficients[-1]) < 0
-    if falls or basis.slopes(coefficients).min() <= 0:
-        return _measured(points, 0.0, sharp=coefficients[-1] > 0)
-    # The error of every second point, which is larger than that of all.
-    half = np.zeros(points.x.size, dtype=bool)
-    half[:: max(2, points.x.size // (_KNOTS // 2))] = half[-1] = True
-    spread = np.zeros_like(coefficients)
-    if half.sum() > 2:
-        coarse = replace(points, x=points.x[half], y=points.y[half], weight=points.weight[half])
-        other = TableBasis(coarse, _knots(coarse, _KNOTS))
-        found = _least_roughness(other)
-        spread = _between(basis, other, found) - coefficients
-    return basis.fit(coefficients, spread)
+def _nearest(points: TablePoints, uncertainty: float | None, order: int) -> TableFit:
+    """Return the smoothest admissible fit within the uncertainty, or the scatter.
 
-
-def _between(basis: TableBasis, other: TableBasis, coefficients: Array) -> Array:
-    """Return the coefficients, in a basis, of a slope in another one with fewer knots."""
-    matrix = BSpline.design_matrix(basis.places, basis.t, basis.degree)
-    splines = spsolve(matrix.tocsc(), other.spline(coefficients)(basis.places))
-    return np.concatenate([splines[1:], coefficients[other.size - 1 : -1], splines[:1]])
-
-
-def _least_roughness(basis: TableBasis) -> Array:
-    """Return the coefficients of the interpolant whose last derivative jumps least."""
-    points = basis.points
-    largest = float(np.abs(basis.heights[:, : basis.size - 1]).max())
-    jumps = largest * basis.jumps()
-    # A height at a small radius is met as accurately, relatively.
-    weight = _HEAVY / np.maximum(points.x, points.x[1])
-    given = np.full(basis.heights.shape[1], np.nan)
-    smooth, sharp = (_solved(basis, weight, jumps, given, sharp=tip) for tip in (False, True))
-    roughness = [float(np.linalg.norm(jumps[:_TIP_KNOTS] @ each)) for each in (smooth, sharp)]
-    is_sharp = roughness[0] > max(_SHARPER * roughness[1], ROUNDED * largest)
-    return sharp if is_sharp else smooth
-
-
-def _measured(
-    points: TablePoints, uncertainty: float | None, *, sharp: bool | None = None
-) -> TableFit:
-    """Return the smoothest admissible fit within the uncertainty, or the scatter."""
-    basis = TableBasis(points, _knots(points, _KNOTS_OF_MEASURED))
-    without, with_tip = (_Spectrum(basis, uncertainty, sharp=tip) for tip in (False, True))
-    if sharp is None:
-        sharp = with_tip.score * (1 + _SHARPER_MEASURED / points.x.size) < without.score
-    chosen = with_tip if sharp else without
+    Parameters
+    ----------
+    uncertainty : of the heights over their range; 0 to meet them, None to estimate it.
+    order : of the derivative of the slope whose mean square is the roughness.
+    """
+    basis = TableBasis(points, _knots(points, _KNOTS[order]))
+    chosen = _Spectrum(basis, uncertainty, order, sharp=False)
+    # A tip that lowers rounding errors is none.
+    if chosen.score > (10 * _EXACT if uncertainty == 0 else ROUNDED) ** 2:
+        sharp = _Spectrum(basis, uncertainty, order, sharp=True)
+        factor = _SHARPER if uncertainty == 0 else 1 + _SHARPER_MEASURED / points.x.size
+        if sharp.score * factor < chosen.score:
+            chosen = sharp
     coefficients = _by_rows(basis, chosen, np.full(basis.heights.shape[1], np.nan))
     # The posterior of the coefficients. Source: wahba.
     spread = _SPREAD * chosen.sigma * chosen.spread
-    used = ~basis.free
-    used[-1] = chosen.sharp
-    if min(coefficients[used].min(), basis.slopes(coefficients).min()) < _FLOOR:
+    splines, jumps = coefficients[: basis.size - 1], coefficients[basis.size - 1 : -2 : 2]
+    floor = _FLOOR
+    if order > _ROUGH:
+        # A flat that is met is flat up to rounding errors, and what is smooth has no jumps.
+        flat = np.abs(splines) < _FLOOR
+        splines[flat] = (_TINY * basis.places[1:])[flat]
+        jumps[np.abs(jumps) < _FLOOR] = floor = 0.0
+        coefficients[-1] *= abs(coefficients[-1]) > ROUNDED
+    # Where the slope falls by a step, g' is infinite and negative beyond it.
+    falls = min(jumps.min(initial=0.0), coefficients[-1]) < 0
+    if falls or basis.slopes(coefficients).min() <= floor:
+        if order > _ROUGH:
+            return _nearest(points, uncertainty, _ROUGH)
         coefficients = _not_negative(basis, chosen)
         scatter = root_mean_square(points.weight * basis.deviation(coefficients))
         spread = spread * max(scatter / chosen.sigma, 1.0)
@@ -205,28 +169,21 @@ def _not_negative(basis: TableBasis, chosen: "_Spectrum") -> Array:
 
 
 def _by_rows(basis: TableBasis, chosen: "_Spectrum", given: Array) -> Array:
-    """Return the coefficients of least misfit and roughness of a spectrum, some of them given."""
-    return _solved(basis, basis.points.weight, chosen.rough, given, sharp=chosen.sharp)
-
-
-def _solved(basis: TableBasis, weight: Array, rough: Array, given: Array, *, sharp: bool) -> Array:
-    """Return the coefficients of least misfit and roughness, those that are not given, by QR.
+    """Return the coefficients of least misfit and roughness of a spectrum, by QR.
 
     The largest rows come first, so that a small weight of the roughness keeps its digits.
     Source: cox-higham.
 
     Parameters
     ----------
-    weight : of the misfit at each point.
-    rough : rows of the roughness.
     given : coefficients that are known, NaN for the others.
-    sharp : the slope on the axis is a coefficient; else it is zero.
     """
-    system = np.vstack([basis.heights * weight[:, None], rough])
-    right = np.concatenate([basis.points.y * weight, np.zeros(len(rough))])
+    weight = basis.points.weight
+    system = np.vstack([basis.heights * weight[:, None], chosen.rough])
+    right = np.concatenate([basis.points.y * weight, np.zeros(len(chosen.rough))])
     order = np.argsort(-np.abs(system).max(axis=1), kind="stable")
     free = np.isnan(given)
-    free[-1] &= sharp
+    free[-1] &= chosen.sharp
     result = np.where(np.isnan(given), 0.0, given)
     right = (right - system @ result)[order]
     rotated, triangle, column = qr_multiply(system[order][:, free], right, pivoting=True)
@@ -247,11 +204,14 @@ class _Spectrum:
     Source: elden.
     """
 
-    def __init__(self, basis: TableBasis, uncertainty: float | None, *, sharp: bool) -> None:
+    def __init__(
+        self, basis: TableBasis, uncertainty: float | None, order: int, *, sharp: bool
+    ) -> None:
         points = basis.points
-        self.sharp, order = sharp, min(_ROUGH, basis.degree)
+        self.sharp, tried, met = sharp, _WEIGHTS[order], order > _ROUGH
+        order = min(order, basis.degree)
         matrix, goal = basis.heights * points.weight[:, None], points.y * points.weight
-        smooth, rough = basis.by_roughness(order, sharp=sharp)
+        smooth, rough = basis.by_roughness(order, met=met, sharp=sharp)
         seen, size, right = np.linalg.svd(matrix @ smooth, full_matrices=False)
         # Few points leave directions without misfit and roughness.
         known = size > _OPEN * size[0]
@@ -268,28 +228,34 @@ class _Spectrum:
         part = np.zeros_like(size2)
         part[: size.size] = left.T @ (base.T @ goal)
         rest = float(np.square(goal - base @ (base.T @ goal)).sum())
-        weights = size2[0] * _WEIGHTS
-        kept = size2 / np.add.outer(weights, size2)
-        misfit = np.square((1 - kept) * part).sum(axis=1) + rest
-        freedom = fitted.size + kept.sum(axis=1)
+        # Where few points leave all bends open, there is no smoothest one.
+        weights = max(size2[0], _OPEN**2 * float(np.square(bent).sum())) * tried
+        left_out = weights[:, None] / np.add.outer(weights, size2)
+        misfit = np.square(left_out * part).sum(axis=1) + rest
+        freedom = fitted.size + (1 - left_out).sum(axis=1)
         count = points.x.size
         left_over = count - _GCV * freedom
         with np.errstate(divide="ignore", invalid="ignore"):
             score = np.where(left_over > 0, count * misfit / np.square(left_over), np.inf)
         # Of weights that do not matter the one that leaves most open.
-        at = int(np.argmax(score <= score.min() * (1 + _EQUAL_SCORES)))
+        at = best = int(np.argmax(score <= score.min() * (1 + _EQUAL_SCORES)))
         if uncertainty is not None:
-            within = np.flatnonzero(misfit <= (count - freedom) * uncertainty**2)
-            at = min(at, int(within[-1])) if within.size else 0
-        self.score = float(score.min())
-        self.freedom = float(freedom[at])
+            allowed = np.maximum(count - freedom, 1.0) * max(uncertainty, _EXACT) ** 2
+            within = np.append(0, np.flatnonzero(misfit <= allowed))
+            at = min(int(within[-1]), best if uncertainty else weights.size)
+        whole = left_out @ np.square(part) + rest
+        # Few points that are met leave cross-validation nothing to judge a tip by.
+        self.score = float(whole[-1] if uncertainty == 0 else score.min())
+        self.freedom = float(freedom[best])
         self.most = min(float(freedom[0]), count / _GCV)
-        self.rough = np.sqrt(weights[at]) * basis.derivative(order)
+        self.rough = np.sqrt(weights[at]) * basis.derivative(order, met=met)
         """Rows of the roughness."""
-        scatter = float(np.sqrt(misfit[at] / max(count - self.freedom, 1.0)))
+        likely = best if uncertainty == 0 else at
+        # Of noise and roughness together. Source: wahba.
+        scatter = float(np.sqrt(whole[likely] / max(count - fitted.size, 1)))
         self.sigma = max(uncertainty or scatter, 1e-16)
         # The points hardly tell the best weight from a smaller one, which leaves more open.
-        plausible = min(at, int(np.argmax(score <= score.min() * (1 + _PLAUSIBLE / count))))
+        plausible = min(likely, int(np.argmax(score <= score.min() * (1 + _PLAUSIBLE / count))))
         self.spread = np.hstack([smooth, rough / np.sqrt(size2 + weights[plausible])])
         """Square root of the inverse of the matrix of misfit and roughness."""
 
@@ -298,7 +264,7 @@ def _has_no_noise(points: TablePoints) -> bool:
     """True if the points deviate from a smooth shape by rounding errors, or less than it does."""
     if points.rounded or scatter(points) < ROUNDED:
         return scatter(points) < ROUNDED
-    most = min(_KNOTS_OF_MEASURED, points.x.size // 2)
+    most = min(_KNOTS[_ROUGH], points.x.size // 2)
     basis = TableBasis(points, _knots(points, most))
-    spectrum = _Spectrum(basis, None, sharp=True)
+    spectrum = _Spectrum(basis, None, _ROUGH, sharp=True)
     return spectrum.freedom > _NO_NOISE * spectrum.most
