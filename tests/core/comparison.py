@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from decimal import Decimal
 from math import inf, isfinite, isinf
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mdr_core.normal import NormalContact, solve
@@ -37,6 +39,11 @@ def profile_from(fields: Mapping[str, Any]) -> Profile:
     if fields["kind"] == "series":
         given = {"terms": tuple(PowerTerm(**term) for term in given["terms"])}
     return KINDS[fields["kind"]](**given)
+
+
+def stored(name: str) -> Any:
+    """Return the data of the tests under a name."""
+    return json.loads((Path(__file__).parents[1] / "data" / f"{name}.json").read_text("utf-8"))
 
 
 def contact_of(case: Mapping[str, Any]) -> NormalContact:

@@ -9,7 +9,7 @@ import pytest
 from mpmath import mp, mpf
 
 from mdr_core import history, normal
-from tests.core.comparison import profile_from
+from tests.core.comparison import profile_from, stored
 from tests.oracles import history_reference
 from tests.oracles.slip_reference import WORK_DIGITS, Material
 
@@ -22,27 +22,7 @@ MATERIAL = Material(3.7, 2.9, 0.37)
 DEPTH = 0.25
 #: Tangential displacement at the onset of full slip.
 FULL_SLIP = MATERIAL.mu * MATERIAL.e_star / MATERIAL.g_star * DEPTH
-PROFILES: dict[str, dict[str, Any]] = {
-    "paraboloid": {"kind": "paraboloid", "radius": 1.3},
-    "cone": {"kind": "cone", "slope": 0.3},
-    "power0.7": {"kind": "power", "coefficient": 0.7, "exponent": 0.7},
-    "power4": {"kind": "power", "coefficient": 0.4, "exponent": 4.0},
-    "series": {
-        "kind": "series",
-        "terms": [{"coefficient": 0.2, "exponent": 1.0}, {"coefficient": 0.3, "exponent": 3.0}],
-    },
-    "sphere": {"kind": "sphere", "radius": 1.5},
-    "rounded-punch": {"kind": "rounded_punch", "flat_radius": 0.6, "rounding_radius": 2.0},
-    "truncated-cone": {"kind": "truncated_cone", "flat_radius": 0.6, "slope": 0.3},
-    "rounded-cone": {"kind": "rounded_cone", "slope": 0.3, "tip_radius": 1.7},
-    "capped-paraboloid": {
-        "kind": "capped_paraboloid",
-        "cap_radius": 0.4,
-        "tip_radius": 3.0,
-        "radius": 1.1,
-    },
-    "flat-punch": {"kind": "flat_punch", "radius": 0.5},
-}
+PROFILES: dict[str, dict[str, Any]] = stored("profiles")["histories"]
 every_profile = pytest.mark.parametrize("name", PROFILES)
 
 

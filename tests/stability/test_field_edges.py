@@ -9,40 +9,14 @@ import pytest
 from mpmath import isfinite, mpf
 
 from mdr_core import fields, normal, tangential
-from tests.core.comparison import profile_from
+from tests.core.comparison import profile_from, stored
 from tests.oracles import slip_reference
 from tests.oracles.slip_reference import Material, setting
 
 MU, RTOL = 0.4, 1e-13
 MATERIAL = Material(1.0, 0.8, MU)
 R = np.linspace(0.0, 1.2, 30)
-SHAPES: dict[str, tuple[dict[str, Any], float]] = {
-    "paraboloid": ({"kind": "paraboloid", "radius": 1.3}, 0.4),
-    "cone": ({"kind": "cone", "slope": 0.3}, 0.4),
-    "sphere": ({"kind": "sphere", "radius": 1.0}, 0.5),
-    "power": ({"kind": "power", "coefficient": 0.7, "exponent": 50.0}, 0.9),
-    "rounded punch": ({"kind": "rounded_punch", "flat_radius": 0.5, "rounding_radius": 1.0}, 0.7),
-    "thin annulus": ({"kind": "rounded_punch", "flat_radius": 0.5, "rounding_radius": 1.0}, 0.5001),
-    "truncated cone": ({"kind": "truncated_cone", "flat_radius": 0.5, "slope": 0.3}, 0.7),
-    "truncated paraboloid": (
-        {"kind": "truncated_paraboloid", "flat_radius": 0.5, "radius": 1.0},
-        0.7,
-    ),
-    "rounded cone": ({"kind": "rounded_cone", "slope": 0.3, "tip_radius": 1.0}, 0.5),
-    "spherical-tip cone": ({"kind": "spherical_tip_cone", "slope": 3.0, "tip_radius": 0.5}, 0.6),
-    "hyperboloid": ({"kind": "hyperboloid", "slope": 0.3, "tip_radius": 1.0}, 0.5),
-    "capped paraboloid": (
-        {"kind": "capped_paraboloid", "cap_radius": 0.4, "tip_radius": 2.0, "radius": 0.5},
-        0.6,
-    ),
-    "series": (
-        {
-            "kind": "series",
-            "terms": [{"coefficient": 0.5, "exponent": 2.0}, {"coefficient": 1.0, "exponent": 6.0}],
-        },
-        0.7,
-    ),
-}
+SHAPES: dict[str, tuple[dict[str, Any], float]] = stored("profiles")["beside_edges"]
 #: Fractions of full slip: slip annuli from about 1e-10 a to most of the contact.
 FRACTIONS = (1e-10, 1e-5, 0.01, 0.5, 0.99)
 FIELDS = ("pressure", "shear_stress", "slip", "normal_displacement")

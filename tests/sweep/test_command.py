@@ -25,6 +25,7 @@ from mdr_sweep.request_columns import field
 from mdr_sweep.spec import QUANTITIES, Spec, UsageError
 from mdr_sweep.sweep import summary
 from mdr_sweep.tables import Grid, Table, axis, regrouped
+from tests.core.comparison import stored
 from tests.sweep.cases import random_cases, swept, table
 
 BALL: dict[str, Any] = {
@@ -232,39 +233,7 @@ def test_expensive_cases_have_small_chunks() -> None:
     assert expensive.seconds > 10 * cheap.seconds
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (("--out", "a.parquet"), "one of --table"),
-        (("--grid", "load.normal_force=1:2:3", "--out", "a.xlsx"), "a.xlsx"),
-        (("--grid", "load.normal_force=1:2:3", "--out", "folder.csv"), "folder.csv"),
-        (("--grid", "load.normal_force", "--out", "a.csv"), "START:STOP:N"),
-        (("--grid", "load=1:2:3", "--out", "a.csv"), "unknown fields of normal"),
-        (
-            ("--grid", "load.normal_force=1:2:3", "--template", "unknown.json", "--out", "a.csv"),
-            "friction_coefficient, load.pressure",
-        ),
-        (("--grid", "load.normal_force=1:2:3", "--answers", "colour", "--out", "a.csv"), "colour"),
-        (("--grid", "load.normal_force=1:2:3", "--keep", "id", "--out", "a.csv"), "columns id"),
-        (("--table", "none.parquet", "--out", "a.csv"), "cannot read none.parquet"),
-        (("--table", "unknown.parquet", "--out", "a.csv"), "columns): load.farce, name"),
-        (("--table", "result.parquet", "--out", "a.csv"), "contact_radius"),
-        (
-            ("--table", "gap.parquet", "--out", "a.csv"),
-            "profile.terms: the indices of a list start at 0",
-        ),
-        (("--table", "list.parquet", "--out", "a.csv"), "load.normal_force holds values of type"),
-        (("--table", "day.parquet", "--out", "a.csv"), "load.normal_force holds values of type"),
-        (("--table", "flag.parquet", "--out", "a.csv"), "load.normal_force holds values of type"),
-        (
-            ("--grid", "profile.radius=1:2:3", "--template", "list.json", "--out", "a.csv"),
-            "load.normal_force holds values of type list",
-        ),
-        (("--grid", "load.normal_force=1:2:3", "--out", "there.csv"), "--overwrite"),
-        (("--grid", "load.normal_force=1:2:3", "--chunk", "0", "--out", "a.csv"), "--chunk"),
-        (("--grid", "load.normal_force=1:2:3", "--workers", "0", "--out", "a.csv"), "--workers"),
-    ],
-)
+@pytest.mark.parametrize(("options", "message"), stored("wrong_sweeps"))
 @pytest.mark.usefixtures("folder")
 def test_invalid_sweep_is_rejected_at_once(
     capsys: pytest.CaptureFixture[str], options: tuple[str, ...], message: str
