@@ -26,6 +26,8 @@ PART = 0.7
 EXACT = {20: 1e-6, 50: 1e-9, 200: 1e-12}
 #: The curvature of g' is infinite on the axis for r^2.5; the hyperboloid's poles are near.
 EXACT_ROUGHER = EXACT | {200: 1e-11}
+#: Neighbours of 20 points do not tell whether they are exact: they are fitted as measured.
+UNKNOWN = {20: 1e-5}
 DECLARED, UNDECLARED = 1e-8, 3e-4
 #: Answers that may differ by rounding errors and the conditioning of the fit alone.
 SAME = 1e-10
@@ -61,6 +63,8 @@ def codes(contact: Any) -> set[str]:
 def test_exact_points(name: str, count: int, uncertainty: float | None) -> None:
     body = BODIES[name]
     bounds = EXACT if name in {"sphere", "tanh^2"} else EXACT_ROUGHER
+    if uncertainty is None:
+        bounds = bounds | UNKNOWN
     profile = Tabulated(*sampled(body, count), uncertainty=uncertainty)
     assert max(errors(profile, body)) <= bounds[count]
     assert "smoothed" not in codes(solve(profile, 1.0, contact_radius=PART * body.end))

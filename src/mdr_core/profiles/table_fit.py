@@ -34,8 +34,6 @@ _WEIGHTS: Final = {
 _FEW: Final = 12
 # Weight of a degree of freedom in cross-validation, against overfitting. Source: kim-gu.
 _GCV: Final = 1.2
-# Part of the possible degrees of freedom above which no noise is found.
-_NO_NOISE: Final = 0.8
 # Relative difference of the scores of cross-validation that is none.
 _EQUAL_SCORES: Final = 1e-6
 # Increase of the score, times the number of points, up to which a weight is plausible: of a
@@ -75,7 +73,7 @@ def fit_table(
     InputError : points of no body whose contact area is a single disc.
     """
     points = cleaned(r, f, breaks)
-    if uncertainty is None and (points.x.size <= _FEW or _has_no_noise(points)):
+    if uncertainty is None and (points.x.size <= _FEW or scatter(points) < ROUNDED):
         uncertainty = 0.0
     order = _ROUGH_OF_EXACT if uncertainty == 0 else _ROUGH
     found = _nearest(points, uncertainty and uncertainty / points.scale[1], order)
@@ -246,8 +244,6 @@ class _Spectrum:
         whole = left_out @ np.square(part) + rest
         # Few points that are met leave cross-validation nothing to judge a tip by.
         self.score = float(whole[-1] if uncertainty == 0 else score.min())
-        self.freedom = float(freedom[best])
-        self.most = min(float(freedom[0]), count / _GCV)
         self.rough = np.sqrt(weights[at]) * basis.derivative(order, met=met)
         """Rows of the roughness."""
         likely = best if uncertainty == 0 else at
@@ -258,13 +254,3 @@ class _Spectrum:
         plausible = min(likely, int(np.argmax(score <= score.min() * (1 + _PLAUSIBLE / count))))
         self.spread = np.hstack([smooth, rough / np.sqrt(size2 + weights[plausible])])
         """Square root of the inverse of the matrix of misfit and roughness."""
-
-
-def _has_no_noise(points: TablePoints) -> bool:
-    """True if the points deviate from a smooth shape by rounding errors, or less than it does."""
-    if points.rounded or scatter(points) < ROUNDED:
-        return scatter(points) < ROUNDED
-    most = min(_KNOTS[_ROUGH], points.x.size // 2)
-    basis = TableBasis(points, _knots(points, most))
-    spectrum = _Spectrum(basis, None, _ROUGH, sharp=True)
-    return spectrum.freedom > _NO_NOISE * spectrum.most
