@@ -10,6 +10,7 @@ import pytest
 from mdr_command import __main__ as command
 from mdr_command.__main__ import COMMANDS, main
 from mdr_core.profiles import KINDS
+from tests.core.comparison import stored
 
 Capture = pytest.CaptureFixture[str]
 OPTIONS = ["--kind", "paraboloid", "--radius", "0.01", "--e-star", "1.15e11"]
@@ -117,27 +118,7 @@ def test_an_area_function_is_a_profile_in_metres(capsys: Capture) -> None:
     assert answer["normal_force"] == pytest.approx([force], rel=1e-9, abs=0)
 
 
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        (["--table", "plain.txt"], "--length-unit: is required: no heading names the unit of r"),
-        (["--table", "plain.txt", "--length-unit", "inch"], "--length-unit: inch is none of"),
-        (["--table", "refused_line.csv"], "refused_line.csv: Line 4: 2 numbers are expected"),
-        (["--table", "none.csv"], "none.csv: No such file or directory"),
-        (["--table", "tabs.txt", "--slope", "1"], "tabs.txt: is a profile: leave out --slope"),
-        (["--length-unit", "mm"], "--length-unit: is valid only with --table"),
-        (["--area-coefficients", "24.5;3"], "--area-coefficients: gives numbers with commas"),
-        (["--area-coefficients", "24.5"], "--largest-height: must be positive"),
-        (
-            ["--area-coefficients", "24.5,-9", "--largest-height", "1"],
-            "--area-coefficients: must not be negative",
-        ),
-        (
-            ["--area-coefficients", "24.5", "--slope", "1"],
-            "--area-coefficients: is a profile: leave out --slope",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("given", "message"), stored("wrong_options"))
 def test_errors_name_the_table_or_the_option(
     given: list[str], message: str, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -15,6 +15,7 @@ import pytest
 from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.serializers import csv as table_of
 from tests.conftest import Client
+from tests.core.comparison import stored
 
 CASES = [
     (path, name, example["value"])
@@ -120,24 +121,7 @@ def test_numbers_have_sign_and_all_digits() -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("accept", "media_type"),
-    [
-        ("application/json", "application/json"),
-        ("*/*", "application/json"),
-        ("", "application/json"),
-        ("application/*", "application/json"),
-        ("text/*", "text/csv"),
-        ("TEXT/CSV", "text/csv"),
-        ("text/csv;q=0.9, application/json;q=0.8", "text/csv"),
-        ("text/csv, */*;q=0.1", "text/csv"),
-        ("text/html, application/xhtml+xml, */*;q=0.8", "application/json"),
-        ("application/json;q=0, */*", "text/csv"),
-        ("text/csv;header=present", "text/csv"),
-        ("image/*", "image/svg+xml"),
-        ("image/svg+xml, text/csv;q=0.5", "image/svg+xml"),
-    ],
-)
+@pytest.mark.parametrize(("accept", "media_type"), stored("accepted_formats"))
 def test_accept_header_selects_the_format(client: Client, accept: str, media_type: str) -> None:
     query = {**BALL, "radius": [0.0, 1e-5], "quantities": ["pressure"]}
     response = ask(client, "/v1/stress", query, accept)
