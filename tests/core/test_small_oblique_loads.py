@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from mdr_core.history import solve
+from mdr_core.errors import AccuracyError
+from mdr_core.history import cycles, solve
 from mdr_core.profiles import Cone, FlatPunch, Paraboloid, Profile, RoundedPunch, Sphere
 
 MU, E_STAR, G_STAR = 0.3, 1.0, 0.8
@@ -51,3 +52,18 @@ def test_results_have_a_limit_at_small_amplitudes(profile: Profile, control: str
 
     for small, large in zip(scaled(1e-7), scaled(1e-4), strict=True):
         assert small == pytest.approx(large, rel=1e-3, abs=1e-4 * np.abs(large).max())
+
+
+@pytest.mark.parametrize("control", ["tangential_force", "tangential_displacement"])
+def test_cycles_within_rounding_errors_have_no_stiffness(control: str) -> None:
+    """F_x below the last digit of mu F_N would give the stiffness 0 or infinity."""
+    normal = {"normal_force": 1e6} if control == "tangential_force" else {"indentation_depth": 1e6}
+    given = FlatPunch(1.0), 1.0, 1.0, 1.0
+    for amplitude in (1e-9, 1e-11):
+        with pytest.raises(AccuracyError, match="rounding errors"):
+            cycles(*given, **normal, **{control: amplitude})
+    # Of a flat punch that sticks the stiffness is 2 a G*.
+    found = cycles(*given, **normal, **{control: 1e-6})
+    error = found.error_estimate
+    assert error < 0.1
+    assert found.secant_stiffness[0] == pytest.approx(2.0, rel=error, abs=0)

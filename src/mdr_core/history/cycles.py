@@ -2,15 +2,18 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
-from mdr_core.errors import InputError
+from mdr_core.errors import AccuracyError, InputError
 from mdr_core.history.solver import LoadHistory, solve
 from mdr_core.materials import Material
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
+
+# Relative rounding error of the tangential load above which there is no answer.
+_UNRESOLVED: Final = 0.1
 
 
 @dataclass(frozen=True, repr=False)
@@ -84,6 +87,7 @@ def cycles(
     Raises
     ------
     InputError : as for `solve`, and a normal amplitude outside 0 to the mean.
+    AccuracyError : a tangential load that is lost in rounding errors of the normal one.
 
     Examples
     --------
@@ -122,4 +126,9 @@ def cycles(
         samples_per_step=samples_per_step,
         rtol=rtol,
     )
+    if history.rounding > _UNRESOLVED:
+        detail = (
+            "the tangential load is lost in the rounding errors of the normal load: increase it"
+        )
+        raise AccuracyError(detail, ("cycles", "tangential"))
     return LoadCycles(history.path, e_star, history.results, rtol, count)

@@ -193,11 +193,11 @@ class LoadHistory(validity.ContactResults):
         """Bound on the error of each result, relative to its largest value in the history."""
         rounding = (_SUMS + self._condition_number) * self.normal.error_estimate
         chords = self.results.error if isinstance(self.results, ExtrapolatedResults) else 0.0
-        return rounding + chords + _ROUNDING * self._small_amplitude
+        return rounding + chords + self.rounding
 
     @property
-    def _small_amplitude(self) -> float:
-        """Relative condition number of steps of the tangential load and of the slip front [1].
+    def rounding(self) -> float:
+        """Relative rounding error of steps of the tangential load and of the slip front [1].
 
         They have the rounding error of the larger one of both coordinates.
         """
@@ -207,7 +207,7 @@ class LoadHistory(validity.ContactResults):
         travel = np.max(np.where(normal[1:] > 0, further - deeper, 0.0))
         # Loads that grow in the ratio of friction move the front by rounding errors alone.
         sizes = least, travel if travel > 8 * _ROUNDING * most else 0.0
-        return float(sum(most / size for size in sizes if size > 0))
+        return _ROUNDING * float(sum(most / size for size in sizes if size > 0))
 
     @cached_property
     def _condition_number(self) -> float:
