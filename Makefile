@@ -35,8 +35,8 @@ test-all: test
 
 # The fast tests of numbers as on a processor without wide vector units, for NumPy, glibc and OpenBLAS alike, with the
 # loop of load histories as Python text. Names that do not apply to a processor have no effect.
-NUMBERS := tests/core tests/stability $(addprefix tests/contract/test_,example_answers.py examples.py gallery.py \
-	readme.py subsurface.py)
+NUMBERS := tests/core tests/stability $(addprefix tests/contract/test_,example_answers.py gallery.py readme.py \
+	subsurface.py)
 UNITS := import numpy; print(*numpy.show_config("dicts").get("SIMD Extensions", {}).get("found", []))
 test-portable: .venv/development
 	rm -rf build/plain && mkdir -p build && cp -R src build/plain && rm -f build/plain/mdr_core/history/*.so
