@@ -126,6 +126,12 @@ class TableBasis:
         """Coefficients (columns, n) of what has no derivative of this order, and of the others.
 
         Each of the others has one coefficient of the weighted derivative that is 1.
+
+        Parameters
+        ----------
+        order : of the derivative of the slope that is the roughness.
+        met : heights are met, which weights the derivative by the spacing of the knots.
+        sharp : the slope may be positive at the axis.
         """
         matrix = BSpline.design_matrix(self.places, self.t, self.degree)
         powers = np.arange(0 if sharp else 1, order)
