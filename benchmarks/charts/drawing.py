@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import textwrap
 from pathlib import Path
 
 import matplotlib as mpl
@@ -44,6 +45,8 @@ MDR_COLOR = "#c1272d"
 BLUE, GREEN, BROWN, VIOLET, GREY = "#1f5fa8", "#2b8a3e", "#8a6d3b", "#6f42c1", "0.35"
 #: Width of every chart [inch]: 700 pixels, which the manual shows unscaled.
 WIDTH = 7.3
+#: Characters in a line of the footer.
+_FOOT = 125
 
 
 def panels(rows: int, columns: int, height: float) -> tuple[Figure, list[Axes]]:
@@ -108,7 +111,7 @@ def _along(points: np.ndarray) -> np.ndarray:
 
 def save(figure: Figure, name: str, foot: str, named: Iterable[Axes] = ()) -> None:
     """Write docs/charts/NAME.svg with a footer line, and names at the lines of some axes."""
-    figure.supxlabel(foot, fontsize=7.0, color="0.4", x=0.995, ha="right")
+    figure.supxlabel(textwrap.fill(foot, _FOOT), fontsize=7.0, color="0.4", x=0.995, ha="right")
     for ax in figure.axes:
         for axis in (ax.xaxis, ax.yaxis):
             if axis.get_scale() == "log":

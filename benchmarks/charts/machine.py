@@ -19,7 +19,10 @@ def processor() -> str:
 
 def footer(*packages: str) -> str:
     """Processor, versions and date, for single-threaded measurements."""
-    found = [f"{name} {metadata.version(name)}" for name in ("numpy", "scipy", *packages)]
+    found = [
+        f"{name}\N{NO-BREAK SPACE}{metadata.version(name)}"
+        for name in ("numpy", "scipy", *packages)
+    ]
     today = dt.datetime.now(dt.UTC).date().isoformat()
     python = f"Python {platform.python_version()}"
     return " · ".join([processor(), "one thread", python, *found, today])

@@ -2,8 +2,8 @@
 
 `/v1/stress` computes pressure and shear stress of a paraboloid in partial slip at n requested
 radii. Its stages are timed one after the other in this process, with the functions of the service:
-parsing and validation, computation, assembly of the result, serialisation. The total is measured by
-a client on one open loopback connection; the remainder is HTTP, framework and sockets.
+parsing and validation, computation, serialisation. The total is measured by a client on one open
+loopback connection; the remainder is HTTP, framework and sockets.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import sys
 from contextlib import contextmanager
 from statistics import median
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import stress_wire_ratio
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 LENGTHS = (1, 10, 100, 1000, 10_000, 100_000)
 MEDIA_TYPES = {"JSON": FORMATS["json"], "CSV": FORMATS["csv"], "NumPy": FORMATS["npz"]}
 SECONDS, SAMPLES = 2.0, 400
-STAGES = ("validation", "compute", "assembly", "serialisation", "HTTP")
+STAGES = ("validation", "compute", "serialisation", "HTTP")
 HEADER = ("form", "radii", "bytes in", "bytes out", *(f"{name} [us]" for name in STAGES), "all")
-COLORS = ("#1f5fa8", "#c1272d", "#8a6d3b", "#2b8a3e", "0.7")
+COLORS = ("#1f5fa8", "#c1272d", "#2b8a3e", "0.7")
 
 
 def body(length: int) -> bytes:
@@ -48,12 +48,14 @@ def stages(text: bytes, format_name: str) -> tuple[dict[str, Callable[[], object
     """Duration of each stage, and the response."""
     question, write = QUERIES["stress"], WRITE[MEDIA_TYPES[format_name]]
     query = StressQuery.model_validate_json(text)
-    found = question.solve(query)
-    document = question.result(query, found)
+
+    def compute() -> Any:
+        return question.result(query, question.solve(query))
+
+    document = compute()
     runs = {
         "validation": lambda: StressQuery.model_validate_json(text),
-        "compute": lambda: question.solve(query),
-        "assembly": lambda: question.result(query, found),
+        "compute": compute,
         "serialisation": lambda: write(document),
     }
     return runs, len(write(document))
@@ -104,20 +106,21 @@ def main() -> None:
                 micro = [one * 1e6 for one in (*times, whole)]
                 rows.append((format_name, length, len(text), size, *micro))
     table(HEADER, rows, "wire")
-    figure, axes = panels(1, len(MEDIA_TYPES), 2.8)
+    figure, axes = panels(1, len(MEDIA_TYPES), 3.0)
     for ax, format_name in zip(axes, MEDIA_TYPES, strict=True):
         own_rows = [row for row in rows if row[0] == format_name]
         parts = np.array([row[4 : 4 + len(STAGES)] for row in own_rows])
         share = 100 * parts / parts.sum(axis=1, keepdims=True)
-        bottom = np.zeros(len(own_rows))
+        start = np.zeros(len(own_rows))
         for column, name, color in zip(share.T, STAGES, COLORS, strict=True):
-            ax.bar(range(len(own_rows)), column, bottom=bottom, color=color, label=name)
-            bottom += column
+            ax.barh(range(len(own_rows)), column, left=start, color=color, label=name)
+            start += column
         labels = [f"{row[1]:,}\n{_readable(row[-1])}" for row in own_rows]
-        ax.set_xticks(range(len(own_rows)), labels, fontsize=7.0)
-        ax.set(title=f"{format_name} response", xlabel="radii, request time")
+        ax.set_yticks(range(len(own_rows)), labels)
+        ax.set(title=f"{format_name} response", xlabel="share of request time [%]")
+        ax.invert_yaxis()
         ax.grid(visible=False)
-    axes[0].set_ylabel("share of request time [%]")
+    axes[0].set_ylabel("number of radii, request time")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
     save(figure, "wire", footer("fastapi", "pydantic", "uvicorn", "orjson"))
 
