@@ -18,7 +18,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mdr_core.elementwise import number
 from mdr_core.history import slip_kernel as kernel
 from mdr_core.history.slip_memory import VertexTree
 from mdr_core.interval_moments import IntervalMoments
@@ -80,7 +79,7 @@ def dissipation(moments: IntervalMoments, tree: VertexTree) -> Array:
     # Over forces the measure is infinite on the axis, where M is zero.
     work = np.multiply(terms, weights, where=terms > 0, out=np.zeros(terms.shape)).sum(axis=0)
     # All springs of a flat are on the axis.
-    flat = 2 * float(moments.profile.contact_radius(number(0.0)))
+    flat = 2 * float(moments.profile.first_radius)
     work += np.where(low == 0, flat * terms[0], 0.0)
     return np.asarray(np.bincount(parts.step, work, tree.top.size), dtype=float)
 

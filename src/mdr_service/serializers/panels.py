@@ -33,7 +33,6 @@ _OVER_LOADS: Final = (
         "normal_velocity",
     ),
     ("tangential_displacement", ("tangential_force",), "normal_force"),
-    ("indentation_depth", ("normal_force", "residual"), None),
     ("indentation_depth", ("normal_force",), None),
 )
 
@@ -50,7 +49,10 @@ class Units(NamedTuple):
 
 
 class DrawnCurve(NamedTuple):
-    """Points (x, y), and the name of their load; a reference is dashed."""
+    """Points (x, y), and the name of their load.
+
+    A reference is dashed, and measured points are marks, however many they are.
+    """
 
     x: Array
     y: Array
@@ -86,6 +88,8 @@ def panels_of(
     These are fields over the radius or along a line beneath the surface, maps of stresses in a
     plane under the first load, or forces over displacements.
     """
+    if "residual" in result:
+        return "", _fitted(result)
     if "x" not in result and "radius" not in result:
         return _over_loads(result, units)
     control, loads = next(iter(_varied(query, result).items()), ("", [0.0]))
@@ -132,8 +136,6 @@ def _over_loads(result: Mapping[str, Any], units: Units | None) -> tuple[str, li
         (x, ys, load) for x, ys, load in _OVER_LOADS if {x, *ys} <= result.keys()
     )
     at, control = np.asarray(result[x], dtype=float), ""
-    if "residual" in result:
-        return "", _fitted(at, *(np.asarray(result[y]) for y in ordinates))
     # The samples of a history follow each other as on its path.
     parts, values = [np.arange(at.size) if "step" in result else np.argsort(at)], np.zeros(1)
     if load and "step" not in result:
@@ -157,14 +159,16 @@ def _over_loads(result: Mapping[str, Any], units: Units | None) -> tuple[str, li
     ]
 
 
-def _fitted(at: Array, force: Array, residual: Array) -> list[Panel | Map]:
+def _fitted(result: Mapping[str, Any]) -> list[Panel | Map]:
     """Return the panels of a measured curve with the fitted one, and of its residuals."""
-    order = np.argsort(at)
-    x, fit, left = at[order], force[order], residual[order]
-    measured = DrawnCurve(x, fit + left, "measured", is_measured=True)
+    order = np.argsort(result["indentation_depth"])
+    names = "indentation_depth", "normal_force", "residual"
+    depth, fit, residual = (np.asarray(result[name])[order] for name in names)
+    measured = DrawnCurve(depth, fit + residual, "measured", is_measured=True)
+    fitted, left = DrawnCurve(depth, fit, "fitted"), DrawnCurve(depth, residual, is_measured=True)
     return [
-        Panel("indentation_depth", "normal_force", [measured, DrawnCurve(x, fit, "fitted")]),
-        Panel("indentation_depth", "residual", [DrawnCurve(x, left, is_measured=True)]),
+        Panel("indentation_depth", "normal_force", [measured, fitted]),
+        Panel("indentation_depth", "residual", [left]),
     ]
 
 
