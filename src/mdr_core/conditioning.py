@@ -9,18 +9,15 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.doubles import ADJACENT, EPS, TINY
 from mdr_core.elementwise import full, some, where
 from mdr_core.equivalent_1d import EARLY, load_and_slope, stick_edge
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags
 
-_EPS: Final = float(np.finfo(float).eps)
 # Relative distance over which the slope of a wide annulus is averaged next to a break.
 _STEP: Final = 4e-11
-# Relative rounding error of a contact coordinate.
-_COORDINATE: Final = 2 * _EPS
-_TINY: Final = float(np.finfo(float).tiny)
 # Part of full slip up to which all condition numbers are small.
 _LATE: Final = 0.9
 # Relative distance from the limiting force within which the contact slides.
@@ -54,12 +51,12 @@ def near_full_slip(
     late = partial & (ratio > _LATE)
     if not some(late):
         return full(0.0, ratio)
-    high, low = ends[0], np.maximum(ends[1], _TINY)
+    high, low = ends[0], np.maximum(ends[1], TINY)
     other = load_and_slope(profile, of_force=not force_prescribed)
     with np.errstate(all="ignore"):
         load, slope = load_and_slope(profile, of_force=force_prescribed)(low)
         other_load, other_slope = other(low)
-        moved = load / (slope * np.maximum(1 - ratio, _EPS / 2))
+        moved = load / (slope * np.maximum(1 - ratio, EPS / 2))
         # The energy of a narrow annulus grows with the cube of its width.
         condition = 3 * moved * other_slope / (other(high)[0] - other_load)
         if edges:
@@ -123,7 +120,7 @@ def of_edge_slope(contact: NormalContact, width: Array) -> Array:
         return full(0.0, width)
     at = where(at > 0, at, np.nan)
     with np.errstate(all="ignore"):
-        error = np.maximum(contact.edge_errors, _COORDINATE)
+        error = np.maximum(contact.edge_errors, ADJACENT)
         step = np.maximum(np.minimum(where(width > 0, width / at, _STEP), _STEP), error)
         # A radius that is the coordinate itself does not move onto a break that it has not reached.
         exact = (contact.control == "contact_radius") & (at == contact.contact_radius)
@@ -143,7 +140,7 @@ def of_steep_edge(profile: Profile, edge: Array, steps: tuple[Array, Array]) -> 
     steps : d(a) - d(c) [length] and (F(a) - F(c))/E* [length^2].
     """
     error = full(0.0, edge)
-    beyond = np.minimum(edge * (1 + 2 * _COORDINATE), profile.domain)
+    beyond = np.minimum(edge * (1 + ADJACENT), profile.domain)
     for load, step in zip((profile.depth, profile.reduced_force), steps, strict=True):
         below = load(edge)
         wide = step > EARLY / 2 * below

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.interpolate import BPoly
 
 from mdr_core.abel.annulus import Annulus, whole
+from mdr_core.doubles import in_blocks
 from mdr_core.elementwise import full, is_number, some, where
 from mdr_core.profiles import Paraboloid, Profile, RoundedPunch
 from mdr_core.typing import Array, Flags, Indices
@@ -33,8 +34,6 @@ _ROUNDS: Final = 24
 # Size of log(s/b) up to which one curve of Bernstein polynomials serves all rounded punches, whose
 # contacts are similar; number and degree of the polynomials, which leave 2e-14.
 _CURVED, _PIECES, _DEGREE = 14.0, 28, 16
-# Samples evaluated at once, so that temporaries stay in the processor's cache.
-_BLOCK: Final = 65_536
 
 
 # Intervals of the contact coordinate that may hold the highest peak of a load: the load and both
@@ -163,9 +162,8 @@ def _search(profile: Profile, edge: Array, *slip: Array, rim: Array | None = Non
     best = np.zeros(edge.size)
     fixed = np.append(0.0, profile.coordinate_breaks)
     count = max(_SAMPLES // max(fixed.size - 1, 1), _FEWEST)
-    step = max(_BLOCK // (fixed.size * count), 1)
-    for start in range(0, edge.size, step):
-        load = np.arange(start, min(start + step, edge.size))
+    for block in in_blocks(edge.size, fixed.size * count):
+        load = np.arange(edge.size)[block]
         same = np.broadcast_to(fixed, (load.size, fixed.size))
         stops = np.concatenate([same, *(part[load, None] for part in (edge, *slip[1:]))], axis=1)
         stops = np.sort(_within(stops, fixed[0], edge[load, None]), axis=1)

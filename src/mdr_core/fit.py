@@ -21,6 +21,7 @@ from scipy.optimize import least_squares
 from scipy.special import chdtrc, fdtrc
 
 from mdr_core import adhesion, normal, validity
+from mdr_core.doubles import TINY
 from mdr_core.errors import InputError, Notice
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
@@ -465,5 +466,5 @@ class _Model:
         left = residual - basis @ (basis.T @ residual)
         free = count - basis.shape[1]
         rest = float(np.sum(np.square(left)))
-        ratio = (squares - rest) / degrees / max(rest / free, np.finfo(float).tiny)
+        ratio = (squares - rest) / degrees / max(rest / free, TINY)
         return min(float(fdtrc(degrees, free, ratio)), by_size)

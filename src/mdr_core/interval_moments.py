@@ -17,6 +17,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from mdr_core.doubles import EPS, in_blocks
 from mdr_core.elementwise import some, where
 from mdr_core.equivalent_1d import break_below, depth_step, force_step, has_many_breaks
 from mdr_core.inversion import Function
@@ -24,8 +25,6 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import cumulative_rule, in_order
 from mdr_core.typing import Array, Flags, Indices
 
-# Intervals evaluated at once, so that their nodes stay in the processor's cache.
-_BLOCK: Final = 1024
 # Gauss nodes on an interval without a break, see notes, §10.
 _POINTS: Final = 16
 # An interval is wide if the normal coordinate grows on it by more than the first factor, or the
@@ -36,7 +35,6 @@ _WIDE_IN_NORMAL, _WIDE, _WIDE_BEYOND_BREAK = 16.0, 3.0, 1.3
 _WIDE_IN_TABLE: Final = 2.5
 # Below this multiple of the flat's radius the contact radius hardly changes: differences cancel.
 _SHALLOW: Final = 1.5
-_EPS: Final = float(np.finfo(float).eps)
 
 
 class Moments(NamedTuple):
@@ -100,9 +98,8 @@ class IntervalMoments:
             closed = self.profile.interval_moments(span, ends, over_forces=self.over_forces)
         if closed is not None:
             return Moments(span, np.where(span > 0, closed, 0.0))
-        if low.size > _BLOCK:
-            blocks = [slice(i, i + _BLOCK) for i in range(0, low.size, _BLOCK)]
-            parts = [self._part(part).over(low[part], span[part], ends[:, part]) for part in blocks]
+        if len(several := in_blocks(low.size, _POINTS)) > 1:
+            parts = [self._part(at).over(low[at], span[at], ends[:, at]) for at in several]
             return Moments(span, np.concatenate([part.weights for part in parts], axis=1))
         base, _ = break_below(self.profile, ends[1])
         crossed, weights = base > ends[0], np.empty((3, span.size))
@@ -229,7 +226,7 @@ class IntervalMoments:
         """
         profile, (start, stop) = self.profile, ends
         # The moments do not depend on the width itself, which may be below rounding error.
-        width = np.maximum(stop - start, _EPS * stop)
+        width = np.maximum(stop - start, EPS * stop)
         share, weights, cumulative = cumulative_rule(_POINTS)
         high, bottom = np.sqrt(stop - base), np.sqrt(np.maximum(start - base, 0.0))
         climb = width / np.where(high > 0, high + bottom, inf)

@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.doubles import EPS
 from mdr_core.elementwise import every, some, where
 from mdr_core.errors import DefectError
 from mdr_core.typing import Array
@@ -27,8 +28,6 @@ _SMALLEST_STEP: Final = 1e-14
 # Distance from the target, in log, below which the step has converged on a steep rise as well:
 # just above a slope discontinuity it is short long before.
 _CLOSE: Final = 1e-8
-# Relative width of a bracket of at most four spacings of doubles.
-_ADJACENT: Final = 2.0**-51
 # Factor by which an open bracket grows.
 _STRIDE: Final = 16.0
 # Largest step in log.
@@ -107,7 +106,8 @@ def invert(
             done = done | settling | converged
             if every(done):
                 break
-            settling = last | (high - low <= where(high < inf, _ADJACENT * high, 0.0))
+            # Two spacings at either side of the middle are within its own rounding error.
+            settling = last | (high - low <= where(high < inf, 2 * EPS * high, 0.0))
     root = where(positive, where(s < root_at_zero, root_at_zero, s), root_at_zero)
     if every(done):
         return root

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import validity
+from mdr_core.doubles import ADJACENT, ROUNDING
 from mdr_core.elementwise import broadcast, common_shape, where
 from mdr_core.equivalent_1d import coordinate_from_radius, load_and_slope
 from mdr_core.errors import InputError, Notice
@@ -27,13 +28,9 @@ from mdr_core.validation import (
 )
 
 CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
-# Rounding error of a contact radius that follows from a load.
-_RADIUS: Final = 4 * float(np.finfo(float).eps)
 # Energies scale with coordinate^(2 n + 1); this bound on the decades of that power keeps them
 # representable beside factors of the accepted magnitudes.
 _DECADES: Final = 150.0
-# Relative rounding error of a contact radius that follows from a load.
-EDGE_ERROR: Final = 2.0**-48
 # Distance from a root of g', over the root of the rounding error, up to which its slope is that at
 # the distance: there the error of the contact radius is of second order.
 _NEAR_ROOT: Final = 0.25
@@ -155,7 +152,7 @@ class NormalContact(validity.ContactResults):
                 error = error * where(condition > 1, condition, 1.0)
             if profile.steepens:
                 # Just beyond a break the load may change more than the contact radius.
-                beyond = np.minimum(self.coordinate * (1 + _RADIUS), profile.domain)
+                beyond = np.minimum(self.coordinate * (1 + ADJACENT), profile.domain)
                 load = function(self.coordinate)[0]
                 rise = function(beyond)[0] / load - 1
                 error = np.maximum(error, where(load > 0, rise, 0.0))
@@ -166,7 +163,7 @@ class NormalContact(validity.ContactResults):
         """Relative error of the contact radius of each case."""
         if self.control == "contact_radius":
             return 0.0
-        return self.error_estimates if self.profile.flattens else EDGE_ERROR
+        return self.error_estimates if self.profile.flattens else ROUNDING
 
     @property
     def error_estimate(self) -> float:

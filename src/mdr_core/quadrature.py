@@ -14,6 +14,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.special import roots_legendre
 
+from mdr_core.doubles import in_blocks
 from mdr_core.typing import Array, Indices
 
 # h(y, index): y has shape (nodes, m) and may be overwritten; index (m,) selects the integrals. The
@@ -32,8 +33,6 @@ _NEGLIGIBLE: Final = 1e-2
 _LOG_RANGE: Final = 600.0
 # Distance from the end of a piece below which a singularity lies on it.
 _NEAREST: Final = 2.0**-52
-# Nodes times integrals evaluated at once, so that temporaries stay in the processor's cache.
-_BLOCK: Final = 12_288
 
 
 DEFAULT_GROWTH: Final = 2.0
@@ -50,7 +49,7 @@ def gauss_legendre(points: int) -> tuple[Array, Array]:
 
 def in_order(weights: Array, values: Array) -> Array:
     """Return sum w_i values_i over the first axis, bit-identical for one load and for many."""
-    if weights.size * values.shape[-1] > _BLOCK:
+    if len(in_blocks(values.shape[-1], weights.size)) > 1:
         total = np.zeros(values.shape[1:])
         for weight, value in zip(weights, values, strict=True):
             total = total + weight * value
@@ -101,11 +100,9 @@ def _apply(
 ) -> Array:
     """Rule on [0, 1] applied to [lower, lower + length], in blocks that stay in the cache."""
     nodes, weights = rule
-    step = max(_BLOCK // nodes.size, 1)
-    if length.size > step:
+    if len(several := in_blocks(length.size, nodes.size)) > 1:
         results = []
-        for start in range(0, length.size, step):
-            part = slice(start, start + step)
+        for part in several:
             low = None if lower is None else lower[part]
             results.append(_apply(h, rule, low, length[part], index[part]))
         return np.concatenate(results, axis=-1)

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, equivalent_1d, stick_zone, validity
+from mdr_core.doubles import ROUNDING
 from mdr_core.elementwise import broadcast, common_shape, is_number, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.interval_moments import interval_moments
 from mdr_core.materials import Material, shear_modulus
-from mdr_core.normal import EDGE_ERROR, NormalContact
+from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
@@ -213,7 +214,7 @@ class TangentialContact(validity.ContactResults):
         """Rounding error of a stick radius that follows from a load [length]."""
         if self.control == "stick_radius":
             return 0 * self.stick_radius
-        error = self.stick_radius * (EDGE_ERROR + self._limit_rounding)
+        error = self.stick_radius * (ROUNDING + self._limit_rounding)
         return error + self.slip_width * self._width_rounding
 
     @property

@@ -13,6 +13,7 @@ from unittest.mock import patch
 import numpy as np
 
 from mdr_core import fields, normal, quadrature, tangential
+from mdr_core.doubles import in_blocks
 from mdr_core.profiles import KINDS, PowerTerm
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ def counted(kind: type[Profile] | None = None) -> Iterator[Count]:
         h: Callable[..., Any], rule: Any, lower: Any, length: Any, index: Any
     ) -> Any:
         # Larger blocks call the same function again.
-        if length.size <= max(quadrature._BLOCK // rule[0].size, 1):
+        if len(in_blocks(length.size, rule[0].size)) <= 1:
             count.integrand += rule[0].size * length.size
         return apply(h, rule, lower, length, index)
 

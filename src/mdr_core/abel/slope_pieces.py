@@ -19,6 +19,7 @@ from scipy.interpolate import PPoly
 
 from mdr_core.abel.annulus import Annulus, log_ratio
 from mdr_core.abel.displacement import Kernel, arccosine
+from mdr_core.doubles import in_blocks
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array
 
@@ -32,8 +33,6 @@ _NEAR_NODES, _NEAR_WEIGHTS = composite_rule(16)
 _BESIDE: Final = 1e-20
 # Sorted radii that share their far pieces.
 _BLOCK: Final = 16
-# Radii whose near pieces are held at once: 40 MiB.
-_MANY: Final = 16_384
 # Distance from the axis, over the first piece, within which a smooth stress is constant.
 _AXIS: Final = 1e-8
 
@@ -55,9 +54,8 @@ def integrals(
     -------
     Array of shape (m,) or (m, k).
     """
-    if r.size > _MANY:
-        blocks = np.array_split(r, -(-r.size // _MANY))
-        found = [integrals(slope, left, length, block, kernel, sign) for block in blocks]
+    if len(several := in_blocks(r.size)) > 1:
+        found = [integrals(slope, left, length, r[block], kernel, sign) for block in several]
         return np.concatenate(found)
     order = np.argsort(r, kind="stable")
     at = r[order, None]

@@ -1,16 +1,14 @@
 """Stress integral of a slope g' that is smooth on intervals. Source: notes, §5."""
 
 from collections.abc import Sequence
-from typing import Final
 
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch, smooth_parts
 from mdr_core.abel.two_root import two_root_integral
+from mdr_core.doubles import TINY
 from mdr_core.typing import Array
-
-_TINY: Final = float(np.finfo(float).tiny)
 
 
 def stress_integral(branches: Sequence[Branch], annulus: Annulus, r: Array, rtol: float) -> Array:
@@ -46,6 +44,6 @@ def _on_part(branch: Branch, low: Array, high: Array, gap: Array, r: Array, rtol
         # Nearer to the axis the stress is that on it, up to rounding error.
         r = np.maximum(r, np.where(low > 0, 1e-8 * low, 1e-120 * high))
     top = inverse_hypot(high, base)
-    roots = np.maximum(top + inverse_hypot(low, base), _TINY)
+    roots = np.maximum(top + inverse_hypot(low, base), TINY)
     ends = Annulus(top, gap * (low + high) / roots, low, high)
     return two_root_integral(branch.weight, base, r, ends, rtol=rtol, growth=branch.steepness)

@@ -11,19 +11,17 @@ Source: notes, §5.
 """
 
 from collections.abc import Callable
-from typing import Final
 
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus, inverse_hypot
+from mdr_core.doubles import TINY
 from mdr_core.elementwise import some, where
 from mdr_core.quadrature import DEFAULT_GROWTH, integrate
 from mdr_core.typing import Array, Indices
 
 # weight(x, s) = F(x) s/x with s = sqrt(x^2 - b^2), free of the root of F at b.
 Weight = Callable[[Array, Array], Array]
-
-_TINY: Final = float(np.finfo(float).tiny)
 
 
 def two_root_integral(
@@ -98,7 +96,7 @@ def two_root_integral(
     # sinh y is the smaller root over epsilon at either end, and cosh y the larger one.
     roots = np.sqrt(outer2) * np.where(root > 0, lower, epsilon) + root * upper
     covered2 = np.where(root > 0, width * (upper + lower), outer2)
-    length = np.arcsinh(covered2 / np.maximum(roots, _TINY))
+    length = np.arcsinh(covered2 / np.maximum(roots, TINY))
     start = np.arcsinh(np.minimum(root, lower) / epsilon) if some(lower > 0) else None
 
     def h(y: Array, index: Indices) -> Array:

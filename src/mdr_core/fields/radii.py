@@ -11,17 +11,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core.adhesion import AdhesiveContact
+from mdr_core.doubles import ADJACENT, ROUNDING
 from mdr_core.elementwise import broadcast, some
 from mdr_core.errors import InputError
 from mdr_core.history import ContactState
-from mdr_core.normal import EDGE_ERROR, NormalContact, solve
+from mdr_core.normal import NormalContact, solve
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_core.validation import require_type
 
-_EPS: Final = float(np.finfo(float).eps)
-# Units in the last place of an edge within which the error of a field is not estimated.
-_TOO_CLOSE: Final = 4.0
 # Largest error of a field by that of an edge, relative to its largest value, on a grid with room
 # enough: a tenth of the errors estimated elsewhere.
 _GRID_ERROR: Final = 1e-12
@@ -95,7 +93,7 @@ def rim_error(edges: Edges, distance: Array) -> float:
     Relative to the stress there; points within four units in the last place are excluded.
     """
     gap = np.abs(distance)
-    gap = np.where(gap > edges.radius * (_TOO_CLOSE * _EPS), gap, inf)
+    gap = np.where(gap > edges.radius * ADJACENT, gap, inf)
     return float((edges.error / gap).max())
 
 
@@ -111,7 +109,7 @@ def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
     if not root:
         return float((2 * error / scale).max())
     # The nearest radii on either side of each edge.
-    r, away = np.concatenate([(-inf,), radius, (inf,)]), at * (_TOO_CLOSE * _EPS)
+    r, away = np.concatenate([(-inf,), radius, (inf,)]), at * ADJACENT
     r.sort()
     below = at - r[r.searchsorted(at - away) - 1]
     above = r[r.searchsorted(at + away, side="right")] - at
@@ -147,7 +145,7 @@ def grid(contact: NormalContact | TangentialContact | ContactState, points: int)
     gaps = np.diff(stops, append=inf)
     place = np.searchsorted(stops, moving)
     gap = np.minimum(gaps[place], gaps[place - 1])
-    clear = (EDGE_ERROR / (2 * _GRID_ERROR)) ** 2 * np.square(moving) / gap
+    clear = (ROUNDING / (2 * _GRID_ERROR)) ** 2 * np.square(moving) / gap
     if isinstance(contact, AdhesiveContact):
         clear = known.error.max() / _GRID_ERROR
     stops[place] = moving - np.minimum(clear, gap / 4)

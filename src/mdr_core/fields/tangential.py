@@ -8,13 +8,14 @@ radius, and the kernels are superposed.
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import equivalent_1d
 from mdr_core.abel.annulus import Annulus
+from mdr_core.doubles import ADJACENT
 from mdr_core.fields.arc import Arc
 from mdr_core.fields.normal import by_load, fill, stress
 from mdr_core.history import ContactState
@@ -22,9 +23,6 @@ from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_core.validation import require_tolerance, require_type
-
-# An edge that differs from the contact radius by rounding belongs to the contact.
-_EDGE: Final = 1 + 4 * float(np.finfo(float).eps)
 
 
 class Traction(NamedTuple):
@@ -156,7 +154,8 @@ def slip(
 
     def values(load: Traction, r: Array) -> Array:
         result = np.zeros(r.shape)
-        inside = r <= load.radius[-1] * _EDGE
+        # An edge that differs from the contact radius by rounding belongs to the contact.
+        inside = r <= load.radius[-1] * (1 + ADJACENT)
         # S(0; r) and S(b; r) are equal: g is zero on a flat.
         fronts = [0.0, *load.radius[1:].tolist()]
         slopes = pairwise([0.0, *load.slope.tolist(), 0.0])

@@ -6,10 +6,10 @@ of each pair is prescribed and both change, it is nonlinear in either plane: see
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
 
 import numpy as np
 
+from mdr_core.doubles import ROUNDING
 from mdr_core.errors import InputError
 from mdr_core.history.contact_state import ContactState
 from mdr_core.history.saved_state import UNLOADED, SavedState
@@ -17,9 +17,6 @@ from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.validation import require_finite, require_not_negative
-
-# A force at the onset of full slip differs from mu F_N by the rounding of both.
-_ROUNDING: Final = 8 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -147,7 +144,7 @@ class SampledPath:
         InputError : a tangential force above mu F_N, by the index of its load step.
         """
         limit = np.maximum(normal, 0.0)
-        beyond = np.flatnonzero(np.abs(tangential) > limit * (1 + _ROUNDING))
+        beyond = np.flatnonzero(np.abs(tangential) > limit * (1 + ROUNDING))
         if beyond.size:
             at = int(step[beyond[0]])
             place = "history", "tangential", self.tangential_name, at
@@ -201,7 +198,7 @@ def build(
 
 def _at_limit(limit: Array, tangential: Array) -> Array:
     """Return tangential loads, those at the limit but for rounding errors exactly there."""
-    near = np.abs(np.abs(tangential) - limit) <= 2 * _ROUNDING * limit
+    near = np.abs(np.abs(tangential) - limit) <= ROUNDING * limit
     return np.where(near, np.copysign(limit, tangential), tangential)
 
 

@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.doubles import TINY
 from mdr_core.equivalent_1d import has_many_breaks
 from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import TractionSegments
@@ -42,7 +43,6 @@ _SAFETY_ON_TABLES: Final = 10.0
 # A corner of chords is off its arc by less than this part of its normal coordinate.
 _NEAREST: Final = 1e-3
 # A contact coordinate that is not zero.
-_TINY: Final = float(np.finfo(float).tiny)
 # Newton's method converges from a chord to its arc in four steps.
 _NEWTON_STEPS: Final = 6
 
@@ -80,7 +80,7 @@ class NonlinearSteps:
     def larger(self) -> Array:
         """Contact coordinate of the larger end of each arc, > 0."""
         s = self.path.contact_coordinate
-        return np.maximum(np.maximum(s[1:], s[:-1]), _TINY)
+        return np.maximum(np.maximum(s[1:], s[:-1]), TINY)
 
     @cached_property
     def _parts(self) -> tuple[Indices, Array, Array]:

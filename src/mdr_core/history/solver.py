@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, normal, validity
+from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.elementwise import number
 from mdr_core.errors import InputError, Notice
 from mdr_core.history import load_path, nonlinear_steps, saved_state, slip_memory
@@ -26,8 +27,6 @@ from mdr_core.validation import extremes, not_negative, only_one
 
 # Rounding error of the sums over the segments, relative to that of the profile.
 _SUMS: Final = 40.0
-# Rounding error of the sums of two coordinates, relative to the larger one.
-_ROUNDING: Final = 2 * float(np.finfo(float).eps)
 # Place of the normal load from which a history starts.
 _BEGIN: Final = ("initial_state", "normal")
 
@@ -206,8 +205,8 @@ class LoadHistory(validity.ContactResults):
         deeper, further = np.diff(normal), np.abs(np.diff(tangential))
         travel = np.max(np.where(normal[1:] > 0, further - deeper, 0.0))
         # Loads that grow in the ratio of friction move the front by rounding errors alone.
-        sizes = least, travel if travel > 8 * _ROUNDING * most else 0.0
-        return _ROUNDING * float(sum(most / size for size in sizes if size > 0))
+        sizes = least, travel if travel > ROUNDING * most else 0.0
+        return 2 * EPS * float(sum(most / size for size in sizes if size > 0))
 
     @cached_property
     def _condition_number(self) -> float:

@@ -17,16 +17,13 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from mdr_core.doubles import ROUNDING, in_blocks
 from mdr_core.history import slip_memory
 from mdr_core.history.friction_work import dissipation
 from mdr_core.history.slip_memory import LoadPoints, Polyline, VertexTree
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Indices
 
-# Steps evaluated at once, so that their arrays stay in the processor's cache.
-_BLOCK: Final = 16_384
-# Rounding error of two loads that grow in proportion, over the larger one.
-_ROUNDING: Final = 16 * float(np.finfo(float).eps)
 # Steps whose vertices are kept for later results, which take 40 MB. Those of more steps take longer
 # to be stored and fetched than to be computed again, and their memory has to have a bound.
 _KEPT: Final = 262_144
@@ -196,7 +193,7 @@ class StepResults:
         codes, before = self._per_step(code).astype(np.intp), REGIMES.index(self.regime_before)
         deeper = np.diff(self.points.normal, prepend=self.start.normal)
         further = np.abs(np.diff(self.points.tangential, prepend=self.start.tangential))
-        rounding = np.where(deeper > 0, _ROUNDING * self.points.normal, 0.0)
+        rounding = np.where(deeper > 0, ROUNDING * self.points.normal, 0.0)
         known = (codes < 2) | (further - deeper > rounding)
         last = np.maximum.accumulate(np.where(known, np.arange(codes.size), -1))
         return np.maximum(np.where(last < 0, before, codes[last]), codes > 0)
@@ -226,8 +223,8 @@ class StepResults:
 
     def _follow(self) -> Iterator[_Block]:
         line = self.start
-        for begin in range(0, self.points.normal.size, _BLOCK):
-            points = LoadPoints._make(row[begin : begin + _BLOCK] for row in self.points)
+        for block in in_blocks(self.points.normal.size):
+            points = LoadPoints._make(row[block] for row in self.points)
             tree, line = slip_memory.follow(line, points)
             yield _Block(TractionVertices(self.moments, tree), line)
 

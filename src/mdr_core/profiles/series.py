@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
+from mdr_core.doubles import EPS
 from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
@@ -17,7 +18,6 @@ from mdr_core.typing import Array, Flags, Parameter
 
 # Bound on the logarithm of a starting radius, which nearly equal exponents leave undetermined.
 _MAX_LOG: Final = 70.0
-_EPS: Final = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class Series(Profile):
         )
         with np.errstate(all="ignore"):
             lost = (np.abs(terms).sum(axis=0) / np.abs(terms.sum(axis=0))).max(axis=0)
-        return self.rounding + 8 * _EPS * where(coordinate > 0, lost, 0.0)
+        return self.rounding + 8 * EPS * where(coordinate > 0, lost, 0.0)
 
     @property
     def scale(self) -> Parameter:

@@ -6,6 +6,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
+from mdr_core.doubles import EPS
 from mdr_core.profiles.cancellation_free import tanh_gap
 from mdr_core.profiles.spheroids import Sphere
 from mdr_core.profiles.tipped import TippedCone
@@ -13,7 +14,6 @@ from mdr_core.typing import Array, Flags, Parameter
 
 # Slope up to which the curvature of the tip rises too little to move the largest pressure.
 _SHALLOW: Final = 0.5
-_EPS: Final = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class SphericalTipCone(TippedCone):
     @property
     def rounding(self) -> Parameter:  # type: ignore[override]  # a constant of most kinds
         # R - b is about R/(2 t^2).
-        return 3e-14 + _EPS * self.slope * self.slope
+        return 3e-14 + EPS * self.slope * self.slope
 
     @cached_property
     def flank_start(self) -> Parameter:

@@ -8,6 +8,7 @@ import numpy as np
 
 from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch
+from mdr_core.doubles import EPS, TINY
 from mdr_core.elementwise import some
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.cancellation_free import tanh_gap
@@ -20,8 +21,6 @@ from mdr_core.typing import Array, Flags, Indices, Parameter
 _SHALLOW: Final = 0.64
 # Largest a/R. At the equator the load is infinite, and next to it a does not resolve the load.
 _END: Final = 1 - 1e-8
-_EPS: Final = float(np.finfo(float).eps)
-_TINY: Final = float(np.finfo(float).tiny)
 
 
 class Spheroid(Profile):
@@ -59,7 +58,7 @@ class Spheroid(Profile):
 
     def rounding_at(self, coordinate: Array) -> Parameter:
         """Next to the equator that of R - a. See `Profile`."""
-        return self.rounding + _EPS / 2 * self.radius / (self.radius - coordinate)
+        return self.rounding + EPS / 2 * self.radius / (self.radius - coordinate)
 
     def f(self, radius: Array) -> Array:
         root = np.sqrt((self.radius - radius) * (self.radius + radius))
@@ -115,7 +114,7 @@ class Spheroid(Profile):
             bottom = inverse_hypot(low, r) / np.sqrt(rest_c)
             # arcsinh(top) - arcsinh(bottom), free of cancellation.
             covered = np.where(c > r, width * (a + c), (a - r) * (a + r)) / rest_a / rest_c
-            sums = np.maximum(top / np.sqrt(rest_c) + bottom / np.sqrt(rest_a), _TINY)
+            sums = np.maximum(top / np.sqrt(rest_c) + bottom / np.sqrt(rest_a), TINY)
             start, length = np.arcsinh(bottom), np.arcsinh(covered * np.sqrt(square) / sums)
         smooth = integrate(h, length, rtol, start)
         return self.height / (pi * big) * stretch * (length + smooth)

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.linalg import qr_multiply, solve_triangular
 from scipy.optimize import nnls
 
+from mdr_core.doubles import EPS
 from mdr_core.errors import InputError
 from mdr_core.profiles.table_basis import TableBasis, TableFit, root_mean_square
 from mdr_core.profiles.table_points import ROUNDED, TablePoints, cleaned, off_axis, scatter
@@ -187,7 +188,7 @@ def _by_rows(basis: TableBasis, chosen: "_Spectrum", given: Array) -> Array:
     rotated, triangle, column = qr_multiply(system[order][:, free], right, pivoting=True)
     # Few points leave coefficients open: these are zero.
     size = np.abs(np.diagonal(triangle))
-    rank = np.count_nonzero(size > np.finfo(float).eps * size[0])
+    rank = np.count_nonzero(size > EPS * size[0])
     known = np.flatnonzero(free)[column[:rank]]
     result[known] = solve_triangular(triangle[:rank, :rank], rotated[:rank])
     return result

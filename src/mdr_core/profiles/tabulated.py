@@ -13,6 +13,7 @@ from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch, Kernel, arccosine, arcsine
 from mdr_core.abel.slope_pieces import SlopePieces
 from mdr_core.abel.stress import stress_integral
+from mdr_core.doubles import TINY
 from mdr_core.elementwise import some, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
@@ -32,7 +33,6 @@ _MET: Final = 1.1
 _NODES: Final = 16
 # Number of times that the last radius is halved towards the axis, so that 1/x is smooth on a piece.
 _HALVES: Final = 40
-_LEAST: Final = float(np.finfo(float).tiny)
 # Nodes and weights of a mean over the angles, in which g(r sin t) is smooth.
 _ANGLES, _SHARES = composite_rule(16, 8)
 # Points of a tip from the coefficients of its area function.
@@ -285,7 +285,7 @@ class Tabulated(Profile):
         first, last = inverse_hypot(low, base), inverse_hypot(high, base)
         nodes, weights = (part[:, None] for part in composite_rule(_NODES))
         s = first + (last - first) * nodes
-        x = np.maximum(np.hypot(base, s), _LEAST)
+        x = np.maximum(np.hypot(base, s), TINY)
         slope = self.depth_slope_beyond(x, base, s * s / (x + base)) * s / x
         values = (last - first) * in_order(weights, density(x) * slope)
         total = np.append(0.0, np.cumsum(values[: edges.size - 1]))[piece]

@@ -19,6 +19,7 @@ from numpy.polynomial import legendre
 
 from mdr_core import tangential
 from mdr_core.abel.displacement import Branch
+from mdr_core.doubles import in_blocks
 from mdr_core.errors import InputError
 from mdr_core.fields.tangential import Traction, tractions
 from mdr_core.history import ContactState
@@ -48,8 +49,6 @@ _NEAREST: Final = 1e-32
 _SMALL: Final = 1e-9
 # Largest contact radius, and inverse of the smallest one: 1/rho^3 is a double.
 _LARGEST: Final = 1e95
-# Nodes times points evaluated at once: complex arrays above 128 kB are mapped on each allocation.
-_BLOCK: Final = 8_192
 
 
 class _Blocks(NamedTuple):
@@ -154,7 +153,8 @@ class Foundation:
             nearer = np.abs(low) < np.abs(high)
             low, high = np.where(nearer, (low, low - width), (high + width, high))
             far = np.abs(low - width / 2) >= _FAR * width
-            for part in _in_cache(np.flatnonzero(far), len(level.x)):
+            index = np.flatnonzero(far)
+            for part in (index[rows] for rows in in_blocks(index.size, len(level.x))):
                 own, place = block[part], point[part]
                 square = low.real[part] - level.past[:, own]
                 _add(total, place, square, level.x[:, own], z[place], level.mass[:, own])
@@ -177,7 +177,8 @@ class Foundation:
         count = np.maximum(np.ceil((top - bottom) / _PANEL), 1).astype(int)
         for panels in np.unique(count):
             u, shares = (part[:, None] for part in composite_rule(_NODES, int(panels)))
-            for part in _in_cache(np.flatnonzero(count == panels), u.size):
+            same = np.flatnonzero(count == panels)
+            for part in (same[rows] for rows in in_blocks(same.size, u.size)):
                 length = top[part] - bottom[part]
                 sinh = np.sinh(top[part] - u * length)
                 s = np.minimum(np.maximum(p[part] + q[part] * sinh, s_low[part]), s_high[part])
@@ -211,11 +212,6 @@ def _merged(blocks: _Blocks) -> _Blocks:
     mass = np.concatenate([low.mass * low.x, high.mass * high.x])
     mass = np.einsum("in,ink->kn", mass, shares) / x
     return _Blocks(low.low, high.high, width, past, x, mass)
-
-
-def _in_cache(index: Indices, nodes: int) -> list[Indices]:
-    step = max(_BLOCK // nodes, 1)
-    return [index[start : start + step] for start in range(0, index.size, step)]
 
 
 def _add(total: Numbers, point: Indices, square: Array, x: Array, z: Array, mass: Numbers) -> None:

@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.doubles import EPS, TINY
 from mdr_core.quadrature import piecewise_rule
 from mdr_core.typing import Array, Indices
 
@@ -155,7 +156,7 @@ def _rate(theta: Array) -> Array:
 
 def _angle(squares: Array) -> Array:
     """Return theta of z in [0, 1], by Newton's method in u = ln(tan theta)."""
-    inside = np.clip(squares, np.finfo(float).tiny, 1 - np.finfo(float).epsneg)
+    inside = np.clip(squares, TINY, 1 - EPS / 2)
     target = (np.log(inside) - np.log1p(-inside) - np.log(EDGE)) / 2
     grid = np.linspace(-STRETCH, STRETCH, 256)
     known = grid - STRETCH / (1 + np.exp(2 * grid))

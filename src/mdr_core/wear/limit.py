@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import tangential, validity
+from mdr_core.doubles import ADJACENT, EPS
 from mdr_core.elementwise import broadcast, some, where
 from mdr_core.errors import AccuracyError, InputError, Notice, Remedy
 from mdr_core.materials import Material
@@ -37,9 +38,6 @@ _AT_END: Final = 1 - 1e-12
 _OF_VOLUME: Final = 3.0
 # Relative error of a worn volume above which there is no answer.
 _UNRESOLVED: Final = 0.1
-_EPS: Final = float(np.finfo(float).eps)
-# Relative distance from the stick radius within which the error of a field is not estimated.
-_TOO_CLOSE: Final = 4 * _EPS
 # Least of the largest worn depth over (2/pi) (d - g(c)) arccos(c/r) at the outer edge: 0.38 of a
 # narrow annulus.
 _HIGHEST: Final = 0.2
@@ -268,10 +266,10 @@ class LimitingWear(validity.ContactResults):
         edges = np.array([profile.first_radius, *profile.infinite_pressure_radii], dtype=float)
         beyond = c - edges
         worn = (edges > 0) & (beyond >= 0) & (np.ravel(self.stick_zone.step)[:, None] > 0)
-        gap = np.where(worn, np.maximum(beyond, _EPS * edges), 1.0)
+        gap = np.where(worn, np.maximum(beyond, EPS * edges), 1.0)
         # No width at all is found where the distance is dominated by rounding error.
         size = np.sqrt(gap * (gap + np.where(width < inf, width, 0.0)))
-        rounding = np.where(worn, _EPS * edges / size, 0.0).max(axis=1, initial=0.0)
+        rounding = np.where(worn, EPS * edges / size, 0.0).max(axis=1, initial=0.0)
         return np.asarray(_OF_VOLUME * rounding)
 
     def field_error_estimate(self, radius: ArrayLike, quantities: Iterable[str]) -> float:
@@ -289,8 +287,8 @@ class LimitingWear(validity.ContactResults):
         c, error, step = (np.ravel(part)[:, None] for part in (zone.radius, zone.error, zone.step))
         r, end = checked_radii(radius), np.ravel(self.wear_radius)[:, None]
         away = np.abs(r - c)
-        product = np.where((away <= _TOO_CLOSE * c) | (step <= 0), inf, away * (r + c))
-        found, error = [0.0], error + _EPS * c
+        product = np.where((away <= ADJACENT * c) | (step <= 0), inf, away * (r + c))
+        found, error = [0.0], error + EPS * c
         if "pressure" in names:
             found.append(np.max(np.where(r < c + error, error * c / product, 0.0)))
         if names & {"worn_depth", "limiting_profile"}:

@@ -2,17 +2,14 @@
 
 from collections.abc import Callable
 from math import inf
-from typing import Final
 
 import numpy as np
 
 from mdr_core.abel.annulus import whole
+from mdr_core.doubles import in_blocks
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.wear.limiting_stick import LimitingStick
 from mdr_core.wear.worn_annulus import RTOL, angle
-
-# Pairs of loads and radii handled at once: bounds the memory, whatever their number.
-_BLOCK: Final = 8192
 
 
 def worn_depth(stick_zone: LimitingStick, outer: Array, r: Array) -> Array:
@@ -60,7 +57,7 @@ def _filled(where: Flags, r: Array, values: Callable[[Indices, Array], Array]) -
     """Return `values(load, radius)` at the chosen pairs of (loads, m), zero elsewhere."""
     result = np.zeros(where.shape)
     load, place = np.nonzero(where)
-    for start in range(0, load.size, _BLOCK):
-        which, at = load[start : start + _BLOCK], place[start : start + _BLOCK]
+    for block in in_blocks(load.size):
+        which, at = load[block], place[block]
         result[which, at] = values(which, r[at])
     return result

@@ -12,9 +12,9 @@ from typing import Final
 import numpy as np
 
 from mdr_core import equivalent_1d
+from mdr_core.doubles import ROUNDING
 from mdr_core.elementwise import broadcast, full, where
 from mdr_core.inversion import invert
-from mdr_core.normal import EDGE_ERROR
 from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
@@ -22,8 +22,6 @@ from mdr_core.typing import Array, Flags
 # Points of the search for the largest of several possible stick zones, and those of each of the
 # rounds in which the interval becomes four times narrower: a largest value is exact to 1e-16.
 _POINTS, _FEWER, _ROUNDS = 65, 9, 12
-# Relative rounding error of a load and of a step of the depth.
-_ROUNDING: Final = 16 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -104,7 +102,7 @@ def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> L
         widest,
         f"{profile.kind}'s stick edge under a constant force",
     )
-    found, error = _beneath(profile, top, width), full(_ROUNDING, width)
+    found, error = _beneath(profile, top, width), full(ROUNDING, width)
     return _from(contact, step, unbounded=unbounded, moved=found, width_error=error)
 
 
@@ -147,7 +145,7 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
     step = _step_of_force(contact, amplitude, found[1])
     slope = np.abs(carried(width)[1])
     # Next to the largest force the error is of second order.
-    error = _ROUNDING / (where(slope > 0, slope, 0.0) + np.sqrt(_ROUNDING))
+    error = ROUNDING / (where(slope > 0, slope, 0.0) + np.sqrt(ROUNDING))
     return _from(contact, step, separated=separated, moved=found, width_error=error)
 
 
@@ -226,7 +224,7 @@ def _from(
     if width_error is None:
         # The coordinate resolves the distance from a flat.
         flat = where(contact.full_slip, 0.0, normal.profile.first_radius)
-        width_error, error = full(0.0, slip_width), contact.stick_error - EDGE_ERROR * flat
+        width_error, error = full(0.0, slip_width), contact.stick_error - ROUNDING * flat
     else:
         beyond = normal.contact_radius - normal.profile.first_radius
         error = normal.edge_errors * beyond + width_error * slip_width

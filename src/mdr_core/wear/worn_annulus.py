@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.abel.displacement import arccosine
+from mdr_core.doubles import TINY
 from mdr_core.inversion import invert
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import gauss_legendre
@@ -27,7 +28,7 @@ _NODES: Final = 10
 def largest_width(profile: Profile, stick: Array) -> Array:
     """Return the width at which the annulus reaches the end of the profile [length], > 0."""
     room = ALMOST * float(profile.domain) - stick
-    return np.asarray(np.maximum(room, np.finfo(float).tiny))
+    return np.asarray(np.maximum(room, TINY))
 
 
 def angle(stick: Array, width: Array) -> Array:

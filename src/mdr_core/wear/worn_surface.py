@@ -5,22 +5,19 @@ Functions of a state alone are in the units of `mdr_core.wear.initial_state`.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from math import inf
-from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import fields, normal
 from mdr_core.abel.annulus import inverse_hypot
+from mdr_core.doubles import in_blocks
 from mdr_core.typing import Array
 from mdr_core.validation import checked_radii
 from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.initial_state import InitialState
-
-# Radii at which a field is evaluated at once: bounds the memory.
-_BLOCK: Final = 2_000
 
 
 @dataclass(frozen=True)
@@ -93,7 +90,7 @@ class WornSurface:
         initial, r = self.initial, self._radii(radius)
         result = np.zeros((self.cycles.size, r.size))
         for row, state in zip(result, self.states, strict=False):
-            row[:] = _field_in_blocks(partial(_worn_depth, state), r / initial.length_unit)
+            row[:] = _field_in_blocks(_worn_depth, state, r / initial.length_unit)
         return initial.depth_unit * np.maximum.accumulate(result, axis=0)
 
     def profile(self, radius: ArrayLike) -> Array:
@@ -115,7 +112,7 @@ class WornSurface:
         if unworn.any():
             result[unworn] = fields.pressure(self.initial.normal, r)
         for index in np.flatnonzero(~unworn):
-            result[index] = _field_in_blocks(partial(self._pressure, self.states[index]), r)
+            result[index] = _field_in_blocks(self._pressure, self.states[index], r)
         return result
 
     def _radii(self, radius: ArrayLike) -> Array:
@@ -144,10 +141,12 @@ class WornSurface:
         return np.array([value(state) for state in self.states])
 
 
-def _field_in_blocks(field: Callable[[Array], Array], radius: Array) -> Array:
+def _field_in_blocks(
+    field: Callable[[AnnulusState, Array], Array], state: AnnulusState, radius: Array
+) -> Array:
     """Return a field, in blocks of radii that bound the memory."""
-    blocks = np.split(radius, range(_BLOCK, radius.size, _BLOCK))
-    return np.concatenate([field(block) for block in blocks])
+    blocks = in_blocks(radius.size, state.x.size + state.trail.shape[1])
+    return np.concatenate([field(state, radius[block]) for block in blocks])
 
 
 def _worn_depth(state: AnnulusState, radius: Array) -> Array:

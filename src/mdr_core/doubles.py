@@ -1,0 +1,22 @@
+"""Double precision: its spacing, its least number, and blocks of values that fit in the cache."""
+
+from typing import Final
+
+import numpy as np
+
+EPS: Final = float(np.finfo(float).eps)
+"""Distance from 1 to the next double."""
+TINY: Final = float(np.finfo(float).tiny)
+"""Smallest number with all its digits."""
+ADJACENT: Final = 4 * EPS
+"""Relative distance within which two numbers are the same but for a few roundings."""
+ROUNDING: Final = 16 * EPS
+"""Relative rounding error of a short sum of products, and of a root of one, with room."""
+# Values evaluated at once: arrays above 128 kB, here of complex numbers, are mapped each time.
+_AT_ONCE: Final = 8_192
+
+
+def in_blocks(count: int, values: int = 1) -> list[slice]:
+    """Return slices of `count` rows of so many values each, whose arrays stay in the cache."""
+    step = max(_AT_ONCE // values, 1)
+    return [slice(start, start + step) for start in range(0, count, step)]
