@@ -37,19 +37,17 @@ from mdr_core.typing import Array
 
 # Parts of c at which a state loses its stability.
 _SHARES: Final = {"indentation_depth": 0.5, "normal_force": 1.5}
-# Decades of contact coordinates in which states are searched on either side of 1, and nodes in
-# each: phi bends over a factor of e or more, except next to a break.
-_DECADES, _PER_DECADE = 75, 12
-# Relative distances of nodes from a break, and nodes between breaks.
-_NEXT, _IN_PIECE = np.logspace(-15, -0.5, 59), 9
-# Bound of the logarithm of phi over its level: root finding takes no infinite values.
-_STEEPEST: Final = 50.0
+# Distances of nodes from the axis and from breaks, 12 in a decade: phi bends over a factor of e or
+# more of them.
+_DISTANCES: Final = np.logspace(-75, 75, 1801)
+# Nodes between the breaks of a table, where g' is a polynomial.
+_IN_PIECE: Final = 9
 # Delta_l of a paraboloid at pull-off over the range of adhesion, for Tabor's number 1.
 _TABOR: Final = sqrt(2 * pi) * (9 * pi / 8) ** (1 / 6)
 # Tabor's number from which JKR holds. Source: johnson-greenwood.
 _JKR: Final = 5.0
-# Rounding error of a load, and of the distance from pull-off, relative [1].
-_LOAD, _ROUNDING = 2.0**-49, 1e-13
+# Rounding error of a load, and of a contact coordinate, relative [1].
+_ROUNDING: Final = 2.0**-49
 # Distance of a g'/Delta_l from pull-off, over the root of the rounding error, below which the error
 # of the contact radius is of that order: room for a slow change of phi.
 _NEAR: Final = 0.1
@@ -74,14 +72,13 @@ class Curve:
     @cached_property
     def _nodes(self) -> Array:
         """Coordinates that resolve phi, ascending."""
-        profile, top = self.profile, min(10.0**_DECADES, self.profile.domain)
-        edges = np.concatenate([[0.0], np.ravel(profile.coordinate_breaks), [top]])
+        profile, top = self.profile, min(_DISTANCES[-1], self.profile.domain)
+        edges = np.array([0.0, *np.ravel(profile.coordinate_breaks), top])
         breaks = coordinate_from_radius(profile, np.array(profile.breaks, dtype=float))
-        near = np.multiply.outer(breaks, np.concatenate([1 - _NEXT, 1 + _NEXT]))
+        near = np.add.outer(np.append(0.0, breaks), [*-_DISTANCES, *_DISTANCES])
         between = np.linspace(edges[:-1], edges[1:], _IN_PIECE)
-        decades = np.logspace(-_DECADES, _DECADES, 2 * _DECADES * _PER_DECADE + 1)
-        nodes = np.unique(np.concatenate([np.ravel(near), np.ravel(between), decades]))
-        return nodes[(nodes >= 10.0**-_DECADES) & (nodes <= top)]
+        nodes = np.unique(np.append(near, between))
+        return nodes[(nodes >= _DISTANCES[0]) & (nodes <= top)]
 
     def retraction(self, coordinate: Array) -> Array:
         """Delta_l [length]."""
@@ -107,10 +104,8 @@ class Curve:
         share = _SHARES[name]
 
         def height(coordinate: Array) -> Array:
-            """Logarithm of phi over its level, bounded."""
-            with np.errstate(all="ignore"):
-                ratio = np.log1p(self.excess(share, coordinate) / share)
-            return np.clip(ratio, -_STEEPEST, _STEEPEST)
+            """(phi - level)/(phi + level): root finding takes no infinite values."""
+            return 1 - 2 * share / (2 * share + self.excess(share, coordinate))
 
         nodes, values = self._nodes, height(self._nodes)
         stable = values > 0
@@ -132,12 +127,12 @@ class Curve:
         """Return the outermost stable coordinate of each load (n,), and the most states of one."""
         low, high = self.stable[name]
         least = self.load(name, low)
-        holds = load[:, None] >= least - _LOAD * np.abs(least)
+        holds = load[:, None] >= least - _ROUNDING * np.abs(least)
         holds &= load[:, None] <= self.load(name, high)
         branch = low.size - 1 - np.argmax(holds[:, ::-1], axis=1)
         found = low[branch]
         for k in np.unique(branch):
-            own = (branch == k) & (load - least[k] > _LOAD * abs(least[k]))
+            own = (branch == k) & (load - least[k] > _ROUNDING * abs(least[k]))
             inside = self._nodes[(self._nodes > low[k]) & (self._nodes < high[k])]
             stops = np.concatenate([low[k : k + 1], inside, high[k : k + 1]])
             values = np.maximum.accumulate(self.load(name, stops))
@@ -227,7 +222,7 @@ class AdhesiveContact(NormalContact):
         if self.profile.has_no_partial_slip:
             return full(inf, self.coordinate)
         excess = self.curve.excess(_SHARES[name], self.coordinate)
-        return where(excess > _ROUNDING, excess, 0.0)
+        return where(excess > self.profile.steepness * _ROUNDING, excess, 0.0)
 
     @cached_property
     def elastic_energy(self) -> Array:
@@ -383,7 +378,7 @@ def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, 
     unit = e_star if of_force else 1.0
     amount, least = load / unit, curve.least[name]
     # Under a tip as sharp as the root of r the contact vanishes at zero load.
-    below = np.asarray(amount < least * (1 + _LOAD) if least else amount <= 0)
+    below = np.asarray(amount < least * (1 + _ROUNDING) if least else amount <= 0)
     if some(below):
         pull_off = "pull-off force" if of_force else "pull-off depth"
         where = f"{'below' if least else 'not above'} the {pull_off}, {least * unit:.9g}"
