@@ -94,7 +94,7 @@ def loops() -> Iterator[Case]:
             yield Case(
                 "mindlin-deresiewicz",
                 "unloading",
-                f"T*/(mu N) = {ratio}, back to {part:+g} T*: displacement",
+                f"T_max/(mu N) = {ratio}, back to {part:+g} T_max: displacement",
                 HISTORY,
                 body,
                 at("tangential_displacement", i),
@@ -104,7 +104,7 @@ def loops() -> Iterator[Case]:
         yield Case(
             "mindlin-deresiewicz",
             "reloading",
-            f"T*/(mu N) = {ratio}, reloaded to 0: displacement",
+            f"T_max/(mu N) = {ratio}, reloaded to 0: displacement",
             HISTORY,
             body,
             at("tangential_displacement", 6),
@@ -127,7 +127,7 @@ def loops() -> Iterator[Case]:
         yield Case(
             "mindlin-deresiewicz",
             "energy",
-            f"T*/(mu N) = {ratio}: energy_per_cycle",
+            f"T_max/(mu N) = {ratio}: energy_per_cycle",
             HISTORY,
             cycles,
             at("energy_per_cycle"),
