@@ -23,10 +23,6 @@ LONG_TABLES: Final = {"verification.md"}
 _FORMULA: Final = re.compile(
     r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</(?:span|div)>', re.DOTALL
 )
-_VERBATIM: Final = re.compile(
-    r"(^ *```.*?^ *```$|``?[^`\n]+``?|\$[^$]+\$)", re.DOTALL | re.MULTILINE
-)
-_STARRED: Final = re.compile(r"\b([EG])\*(?!\*)")
 _SCRIPT: Final = re.compile(r"<script>(.*?)</script>", re.DOTALL)
 _scripts: dict[str, str] = {}
 
@@ -42,14 +38,12 @@ def on_files(files: Files, config: Any) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Any, **_: object) -> str:
-    """Lead links to files of the root folder to their pages; escape the stars of E* and G*."""
+    """Lead links to files of the root folder to their pages."""
     if page.file.src_uri in LONG_TABLES:
         page.meta |= {"hide": ["toc"], "search": {"boost": 0.5}}
     for target, name in ROOT_FILES.items():
         markdown = markdown.replace(f"](../{name}", f"]({target}")
-    parts = _VERBATIM.split(markdown)
-    parts[::2] = [_STARRED.sub(r"\1\\*", part) for part in parts[::2]]
-    return "".join(parts)
+    return markdown
 
 
 def on_page_content(html: str, **_: object) -> str:

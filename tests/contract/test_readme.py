@@ -91,10 +91,6 @@ def shell(command: str, folder: Path | None = None) -> str:
     return done.stdout.decode()
 
 
-def test_shell_examples_use_the_command_line() -> None:
-    assert any("| mdr " in command for command, _ in examples("sh", "csv"))
-
-
 @pytest.mark.parametrize(("command", "shown"), examples("sh", "json"))
 def test_curl_example_shows_the_response(client: Client, command: str, shown: str) -> None:
     assert_close(json.loads(shown), json.loads(output_of(client, command)))
