@@ -17,8 +17,6 @@ from mdr_core.typing import Array, Flags, Indices
 # A stress at a radius, given as a contact coordinate, under the load of that index; all (m,).
 _Field = Callable[[Indices, Array], Array]
 
-# Relative accuracy of the stress: that of closed forms, whatever the tolerance of the query.
-_RTOL: Final = 1e-13
 # Samples between two singular radii, clustered at both. The pressure under the power r^100 has the
 # narrowest smooth peak, next to the contact edge: four samples lie above half its height.
 _SAMPLES: Final = 64
@@ -152,11 +150,11 @@ def _search(profile: Profile, edge: Array, *slip: Array, rim: Array | None = Non
         outer, annulus = edge[load], whole(edge[load])
         if slip:
             annulus = Annulus(outer, slip[0][load], c[0][load], coordinate=slip[1][load])
-        stress = profile.pressure_kernel_at(annulus, at, _RTOL)
+        stress = profile.pressure_kernel_at(annulus, at)
         if rim is None:
             return stress
         ratio = profile.contact_radius(at) / profile.contact_radius(outer)
-        height = np.sqrt(np.maximum((1 - ratio) * (1 + ratio), _RTOL))
+        height = np.sqrt(np.maximum((1 - ratio) * (1 + ratio), _SETTLED))
         return stress - rim[load] * (1 / height - 1)
 
     best = np.zeros(edge.size)

@@ -14,29 +14,19 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.special import roots_legendre
 
-from mdr_core.doubles import in_blocks
+from mdr_core.doubles import EPS, in_blocks
 from mdr_core.typing import Array, Indices
 
 # h(y, index): y has shape (nodes, m) and may be overwritten; index (m,) selects the integrals. The
 # values have the shape (..., nodes, m).
 Integrand = Callable[[Array, Indices], Array]
 
-# Nodes of pieces of half length 1 in a strip of pi/2, by the smallest tolerance that they reach.
-_NODES_OF_PIECES: Final = ((1e-4, 8), (1e-8, 12), (0.0, 20))
-PIECE: Final = 2.0
-"""Length of those pieces."""
-# Growth up to which a piece has that length.
+# Length of a piece in a strip of pi/2, and its nodes, which leave rounding error.
+_PIECE, _NODES = 2.0, 20
 STEEP: Final = 8.0
-# Part of the tolerance up to which a contribution is omitted.
-_NEGLIGIBLE: Final = 1e-2
+"""Growth up to which a piece has that length."""
 # Logarithm of the ratio of radii that is considered: exp(-600) of 1e-50 is next to underflow.
 _LOG_RANGE: Final = 600.0
-# Distance from the end of a piece below which a singularity lies on it.
-_NEAREST: Final = 2.0**-52
-
-
-DEFAULT_GROWTH: Final = 2.0
-"""Growth of an integrand that is bounded beside the powers of its kernel."""
 
 
 @lru_cache(maxsize=64)
@@ -64,10 +54,9 @@ def in_order(weights: Array, values: Array) -> Array:
 def integrate(
     h: Integrand,
     length: Array,
-    rtol: float,
     lower: Array | None = None,
     *,
-    growth: float = DEFAULT_GROWTH,
+    growth: float = STEEP,
 ) -> Array:
     """Return the integrals of h over [lower, lower + length], h analytic in the strip.
 
@@ -77,18 +66,17 @@ def integrate(
     ----------
     h : integrand.
     length : lengths, accurate also where the ends are close, shape (m,).
-    rtol : relative tolerance.
     lower : lower ends, shape (m,); None for zero.
     growth : power of exp|Re y| that h resembles over part of the interval.
     """
-    points, piece = nodes_of_pieces(rtol), PIECE / max(growth / STEEP, 1.0)
+    piece = _PIECE / max(growth / STEEP, 1.0)
     # A length that is not finite gives an integral that is not, in one piece.
     counts = np.maximum(np.ceil(np.where(np.isfinite(length), length, 0.0) / piece), 1).astype(int)
     result: Array | None = None
     for count in np.flatnonzero(np.bincount(counts)).tolist():
         index = (counts == count).nonzero()[0]
         start = None if lower is None else lower[index]
-        part = _apply(h, composite_rule(points, count), start, length[index], index)
+        part = _apply(h, composite_rule(_NODES, count), start, length[index], index)
         if result is None:
             result = np.empty((*part.shape[:-1], length.size))
         result[..., index] = part
@@ -133,11 +121,6 @@ def cumulative_rule(points: int) -> tuple[Array, Array, Array]:
     return shares[:, None], weights[:, None], cumulative[:, :, None]
 
 
-def nodes_of_pieces(rtol: float) -> int:
-    """Return the number of nodes of a piece of length 2 where h is analytic for |Im y| < pi/2."""
-    return next(count for limit, count in _NODES_OF_PIECES if rtol >= limit)
-
-
 def piecewise_rule(points: int, ends: Array) -> tuple[Array, Array]:
     """Return nodes and weights on the pieces between the ends."""
     nodes, weights = gauss_legendre(points)
@@ -145,7 +128,6 @@ def piecewise_rule(points: int, ends: Array) -> tuple[Array, Array]:
     return (ends[:-1, None] + width * (nodes + 1) / 2).ravel(), (width * weights / 2).ravel()
 
 
-def reach_of_power(exponent: float, rtol: float) -> float:
+def reach_of_power(exponent: float) -> float:
     """Return log(x0/x) at which (x/x0)^exponent is negligible, or the range of doubles ends."""
-    negligible = -log(_NEGLIGIBLE * rtol)
-    return min(negligible / exponent, _LOG_RANGE) if exponent > 0 else _LOG_RANGE
+    return min(-log(EPS) / exponent, _LOG_RANGE) if exponent > 0 else _LOG_RANGE

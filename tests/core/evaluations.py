@@ -98,30 +98,30 @@ def profile_of(kind: str) -> Profile:
     return KINDS[kind](**given)
 
 
-def solved(profile: Profile, rtol: float) -> tangential.TangentialContact:
+def solved(profile: Profile) -> tangential.TangentialContact:
     """Contact of radius 1 with stick radius 0.8; a flat punch takes forces."""
     if profile.has_no_partial_slip:
-        pressed = normal.solve(profile, 1.0, normal_force=1.0, rtol=rtol)
+        pressed = normal.solve(profile, 1.0, normal_force=1.0)
         return tangential.solve(pressed, 0.8, FRICTION, tangential_force=0.5 * FRICTION)
-    pressed = normal.solve(profile, 1.0, contact_radius=1.0, rtol=rtol)
+    pressed = normal.solve(profile, 1.0, contact_radius=1.0)
     return tangential.solve(pressed, 0.8, FRICTION, stick_radius=STICK)
 
 
-def field(name: str, contact: tangential.TangentialContact, rtol: float) -> np.ndarray:
+def field(name: str, contact: tangential.TangentialContact) -> np.ndarray:
     """One field; for the displacement, its part outside the contact."""
     if name == "normal_displacement":
-        return fields.normal_displacement(contact.normal, BEYOND, rtol=rtol)
+        return fields.normal_displacement(contact.normal, BEYOND)
     if name == "pressure":
-        return fields.pressure(contact.normal, RADII, rtol=rtol)
-    return getattr(fields, name)(contact, RADII, rtol=rtol)
+        return fields.pressure(contact.normal, RADII)
+    return getattr(fields, name)(contact, RADII)
 
 
-def cost(kind: str, name: str, rtol: float) -> int:
+def cost(kind: str, name: str) -> int:
     """Number of integrand values for a field at all radii."""
     profile = profile_of(kind)
-    contact = solved(profile, rtol)
+    contact = solved(profile)
     # A table is resolved only once, which is not part of the field's cost.
-    field(name, contact, rtol)
+    field(name, contact)
     with counted() as count:
-        field(name, contact, rtol)
+        field(name, contact)
     return count.integrand

@@ -1,4 +1,4 @@
-"""Integrals of functions with poles next to the strip would miss their tolerance."""
+"""Integrals of functions with poles next to the strip would lose digits."""
 
 from __future__ import annotations
 
@@ -17,10 +17,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 LENGTHS = (0.05, 0.2, 0.7, 1.5, 3.0, 6.0, 11.0, 20.0)
-#: The tightest tolerance of each number of nodes.
-TOLERANCES = (1e-4, 1e-8, 1e-13)
-#: Rounding error of a sum of about fifty positive terms.
-ROUNDING = 1e-14
+#: Error of the rule, and rounding error of a sum of about fifty positive terms.
+BOUND = 1.1e-13
 
 # Integrands with poles or branch points on the boundary of the strip, and their growth. Each is
 # written once for arrays and mpmath.
@@ -52,12 +50,11 @@ def relative_error(value: float, truth: mpf) -> float:
     return float(abs(mpf(value) / truth - 1))
 
 
-@pytest.mark.parametrize("rtol", TOLERANCES)
 @pytest.mark.parametrize("name", FAMILY)
-def test_plain_integrals_meet_the_tolerance(name: str, rtol: float) -> None:
+def test_plain_integrals_are_exact_to_rounding(name: str) -> None:
     fn, growth = FAMILY[name]
     ends = [(low, low + length) for low in (0.0, 0.3, 2.0) for length in (1e-9, *LENGTHS)]
     lower, length = np.array(ends).T[0], np.array([high - low for low, high in ends])
-    result = integrate(lambda y, _: fn(np, y), length, rtol, lower, growth=growth)
+    result = integrate(lambda y, _: fn(np, y), length, lower, growth=growth)
     for value, (low, high) in zip(result, ends, strict=True):
-        assert relative_error(value, exact(name, low, high)) <= rtol + ROUNDING, (low, high)
+        assert relative_error(value, exact(name, low, high)) <= BOUND, (low, high)

@@ -68,7 +68,7 @@ def test_displacements_of_a_table() -> None:
     r = np.linspace(0, END, 200)
     profile = Tabulated(r, sphere(r))
     inside = np.linspace(0.01, EDGE, 50)
-    result = profile.slip_integral(np.zeros_like(inside), inside, 1e-6)
+    result = profile.slip_integral(np.zeros_like(inside), inside)
     assert result == pytest.approx(sphere(inside), rel=1e-6, abs=0)
     contact = solve(Tabulated(r, r * r / 2), 1.0, contact_radius=EDGE)
     outside = EDGE * (1 + np.geomspace(1e-6, 10, 50))

@@ -101,7 +101,6 @@ def slope_integral(
     high: Array,
     r: Array,
     *kernels: Kernel,
-    rtol: float,
     width: Array | None = None,
 ) -> Array:
     """Return int_low^high g'(x) K(x, sqrt(r^2 - x^2)) dx, one row for each kernel K (k, m).
@@ -113,7 +112,6 @@ def slope_integral(
     branches : intervals of g', ascending.
     low, high, r : 0 <= low <= high <= r [length], shape (m,).
     kernels : K of each integral.
-    rtol : relative tolerance.
     width : r - low, where it has more digits than the difference; high = r [length].
     """
     total = np.zeros((len(kernels), r.size))
@@ -133,11 +131,11 @@ def slope_integral(
                 own = np.sqrt(width * (2 * low + width))[index]
                 root_low = np.where(start == low[index], own, root_low)
             ends = _Ends(s_low, s_high, s_r, root_low, root_high)
-            total[:, index] += _branch(branch, ends, kernels, rtol)
+            total[:, index] += _branch(branch, ends, kernels)
     return total
 
 
-def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float) -> Array:
+def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel]) -> Array:
     """Integrals in tan(alpha/2), s = s_r cos(alpha), above half of s_r, and in log(s) below it."""
     base, (s_low, s_high, s_r, root_low, root_high) = branch.base, ends
     split = np.minimum(np.maximum(s_r / 2, s_low), s_high)
@@ -157,7 +155,7 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float)
         slope = branch.weight(x, s) * root * run
         return np.array([slope * kernel(x, root) for kernel in kernels])
 
-    total = integrate(above, span, rtol, -top - span, growth=growth)
+    total = integrate(above, span, -top - span, growth=growth)
     index = np.flatnonzero(split > s_low)
     if not index.size:
         return total
@@ -166,7 +164,7 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float)
         scale = base or 1.0
         upper, lower = (change(end[index] / scale) for end in (split, s_low))
     if base == 0:
-        lower = np.maximum(lower, upper - reach_of_power(branch.tip, rtol))
+        lower = np.maximum(lower, upper - reach_of_power(branch.tip))
     far = s_r[index]
 
     def below(y: Array, index: Indices) -> Array:
@@ -176,5 +174,5 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], rtol: float)
         slope = branch.weight(x, s) * run
         return np.array([slope * kernel(x, root) for kernel in kernels])
 
-    total[:, index] += integrate(below, upper - lower, rtol, lower, growth=growth)
+    total[:, index] += integrate(below, upper - lower, lower, growth=growth)
     return total

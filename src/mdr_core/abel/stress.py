@@ -11,7 +11,7 @@ from mdr_core.doubles import TINY
 from mdr_core.typing import Array
 
 
-def stress_integral(branches: Sequence[Branch], annulus: Annulus, r: Array, rtol: float) -> Array:
+def stress_integral(branches: Sequence[Branch], annulus: Annulus, r: Array) -> Array:
     """Return int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx.
 
     Source: mdr-5, Eqs. (5.68), (5.70); notes, §5.
@@ -21,7 +21,6 @@ def stress_integral(branches: Sequence[Branch], annulus: Annulus, r: Array, rtol
     branches : intervals of g'.
     annulus : a and c as radii.
     r : radii 0 <= r < a [length], shape (m,); on the axis that next to it, if a tip is sharp.
-    rtol : relative tolerance.
     """
     a, width, c = (np.broadcast_to(part, r.shape) for part in annulus[:3])
     narrow, total = width < a / 2, np.zeros(r.shape)
@@ -33,11 +32,11 @@ def stress_integral(branches: Sequence[Branch], annulus: Annulus, r: Array, rtol
         seen = np.flatnonzero((gap > 0) & (r < high))
         if seen.size:
             ends = low[seen], high[seen], gap[seen]
-            total[seen] += _on_part(branch, *ends, r[seen], rtol)
+            total[seen] += _on_part(branch, *ends, r[seen])
     return total
 
 
-def _on_part(branch: Branch, low: Array, high: Array, gap: Array, r: Array, rtol: float) -> Array:
+def _on_part(branch: Branch, low: Array, high: Array, gap: Array, r: Array) -> Array:
     """Stress integral over low < x < high, gap = high - low, at radii below high."""
     base = branch.base
     if base == 0:
@@ -46,4 +45,4 @@ def _on_part(branch: Branch, low: Array, high: Array, gap: Array, r: Array, rtol
     top = inverse_hypot(high, base)
     roots = np.maximum(top + inverse_hypot(low, base), TINY)
     ends = Annulus(top, gap * (low + high) / roots, low, high)
-    return two_root_integral(branch.weight, base, r, ends, rtol=rtol, growth=branch.steepness)
+    return two_root_integral(branch.weight, base, r, ends, growth=branch.steepness)

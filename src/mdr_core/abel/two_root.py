@@ -17,7 +17,7 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.doubles import TINY
 from mdr_core.elementwise import some, where
-from mdr_core.quadrature import DEFAULT_GROWTH, integrate
+from mdr_core.quadrature import STEEP, integrate
 from mdr_core.typing import Array, Indices
 
 # weight(x, s) = F(x) s/x with s = sqrt(x^2 - b^2), free of the root of F at b.
@@ -30,8 +30,7 @@ def two_root_integral(
     r: Array,
     annulus: Annulus,
     *,
-    rtol: float,
-    growth: float = DEFAULT_GROWTH,
+    growth: float = STEEP,
     beyond: Array | None = None,
 ) -> Array:
     """Return the integrals of F(x)/sqrt(x^2 - r^2) over x from max(r, b, c) to a.
@@ -46,7 +45,6 @@ def two_root_integral(
     weight : F(x) s/x, analytic in s.
     b, r : break b > 0 and points 0 <= r < a [length], r of shape (m,).
     annulus : a and c in the coordinate s; c <= b stands for c = b.
-    rtol : relative tolerance, 1e-3 to 1e-14.
     growth : of the integrand, see `integrate`.
     beyond : sqrt(r^2 - b^2), if all radii lie beyond the break and it has more digits [length].
 
@@ -61,7 +59,7 @@ def two_root_integral(
     >>> top = np.array([np.sqrt(3.0)])
     >>> annulus = Annulus(top, top, np.zeros(1))
     >>> axis = np.zeros(1)
-    >>> value = two_root_integral(lambda x, s: x / x, 1.0, axis, annulus, rtol=1e-12)
+    >>> value = two_root_integral(lambda x, s: x / x, 1.0, axis, annulus)
     >>> float(f"{value[0]:.6g}")
     1.31696
     """
@@ -108,7 +106,7 @@ def two_root_integral(
         x = s + b * b
         return weight(np.sqrt(x, out=x), np.sqrt(s, out=s))
 
-    result = integrate(h, length, rtol, start, growth=growth)
+    result = integrate(h, length, start, growth=growth)
     if infinite is not None:
         result[infinite] = np.inf
     return result

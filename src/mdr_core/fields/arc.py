@@ -6,7 +6,6 @@ profile, with an analytic factor. Source: notes, §10.
 """
 
 from dataclasses import dataclass, replace
-from typing import Final
 
 import numpy as np
 
@@ -15,9 +14,6 @@ from mdr_core.abel.displacement import Branch, arccosine, slope_integral
 from mdr_core.abel.stress import stress_integral
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
-
-# Tolerance of the foundation's load, for which no tolerance is requested.
-_RTOL: Final = 1e-13
 
 
 @dataclass(frozen=True)
@@ -33,21 +29,21 @@ class Arc:
     width: float
     """high - low, without cancellation [length]."""
 
-    def stress(self, r: Array, rtol: float) -> Array:
+    def stress(self, r: Array) -> Array:
         """int k g'(x)/sqrt(x^2 - r^2) dx over the arc, from r on [1]; shape (m,)."""
         result, inside = np.zeros(r.shape), r < self.high
         if inside.any():
             annulus = Annulus(*(np.array([part]) for part in (self.high, self.width, self.low)))
-            result[inside] = stress_integral(self.branches, annulus, r[inside], rtol)
+            result[inside] = stress_integral(self.branches, annulus, r[inside])
         return result
 
-    def slip(self, r: Array, rtol: float) -> Array:
+    def slip(self, r: Array) -> Array:
         """(2/pi) int k g'(x) arccos(x/r) dx over the arc, up to r [length]; shape (m,)."""
         result = np.zeros(r.shape)
         at = r[r > self.low]
         if at.size:
             low, high = np.full(at.shape, self.low), np.minimum(at, self.high)
-            value = slope_integral(self.branches, low, high, at, arccosine, rtol=rtol)[0]
+            value = slope_integral(self.branches, low, high, at, arccosine)[0]
             result[r > self.low] = 2 / np.pi * value
         return result
 
@@ -55,9 +51,7 @@ class Arc:
         """int k g'(x) dx from each radius on the arc to its end [length]; shape (m,)."""
         end = np.full(x.shape, self.high)
         branches = self.branches
-        return slope_integral(
-            branches, x, end, end, lambda at, _root: np.ones_like(at), rtol=_RTOL
-        )[0]
+        return slope_integral(branches, x, end, end, lambda at, _root: np.ones_like(at))[0]
 
     @property
     def branches(self) -> list[Branch]:

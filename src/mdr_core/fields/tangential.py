@@ -57,14 +57,14 @@ class Traction(NamedTuple):
         coordinate = self.coordinate[i : i + 2]
         return Annulus(coordinate[1], self.width[i], self.radius[i], outer, coordinate[0])
 
-    def stress(self, r: Array, rtol: float) -> Array:
+    def stress(self, r: Array) -> Array:
         """Return the stress at radii, over mu E* [1], shape (m,)."""
         result = np.zeros(r.shape)
         for i in np.flatnonzero(self.slope).tolist():
             a = float(self.radius[i + 1])
-            result += self.slope[i] * stress(self.profile, self.annulus(i), a, r, rtol)
+            result += self.slope[i] * stress(self.profile, self.annulus(i), a, r)
         for arc in filter(None, self.arcs):
-            result += arc.stress(r, rtol) / np.pi
+            result += arc.stress(r) / np.pi
         return result
 
     def step(self, i: int, x: Array) -> Array:
@@ -94,7 +94,8 @@ def shear_stress(
     ----------
     contact : tangential contact under any number of loads, or end of a load history.
     radius : radii [length], >= 0, shape (m,).
-    rtol : relative accuracy, 1e-13 to 1e-3.
+    rtol : accuracy required, 1e-13 to 1e-3. Integrals are as accurate as the tightest, whatever it
+        is.
 
     Returns
     -------
@@ -118,7 +119,7 @@ def shear_stress(
     True
     """
     require_tolerance(rtol)
-    return _fill(contact, lambda load, r: load.modulus * load.stress(r, rtol), radius)
+    return _fill(contact, lambda load, r: load.modulus * load.stress(r), radius)
 
 
 def slip(
@@ -139,7 +140,8 @@ def slip(
     ----------
     contact : tangential contact under any number of loads, or end of a load history.
     radius : radii [length], >= 0, shape (m,).
-    rtol : relative accuracy, 1e-13 to 1e-3.
+    rtol : accuracy required, 1e-13 to 1e-3. Integrals are as accurate as the tightest, whatever it
+        is.
 
     Returns
     -------
@@ -163,10 +165,10 @@ def slip(
             slips = inside & (r > front)
             if below != above and slips.any():
                 at = r[slips]
-                kernel = load.profile.slip_integral(np.full(at.shape, front), at, rtol)
+                kernel = load.profile.slip_integral(np.full(at.shape, front), at)
                 result[slips] -= (above - below) * kernel
         for arc in filter(None, load.arcs):
-            result[inside] -= arc.slip(r[inside], rtol)
+            result[inside] -= arc.slip(r[inside])
         result *= load.ratio
         result[inside] -= load.excess
         return result

@@ -20,6 +20,7 @@ from mdr_core.abel.displacement import (
     slope_integral,
 )
 from mdr_core.abel.stress import stress_integral
+from mdr_core.doubles import EPS
 from mdr_core.elementwise import full, number, some, where
 from mdr_core.errors import Notice
 from mdr_core.inversion import Function, invert
@@ -368,19 +369,18 @@ class Profile(ABC):
             found[:, own] = branch.weight(x[:, own], s[:, own])
         return found
 
-    def annulus_integrals(self, low: Array, width: Array, *kernels: Kernel, rtol: float) -> Array:
+    def annulus_integrals(self, low: Array, width: Array, *kernels: Kernel) -> Array:
         """Integrals int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, shape (k, m).
 
         Parameters
         ----------
         low, width : inner radii and widths of the annuli [length], shape (m,).
         kernels : k functions K.
-        rtol : relative tolerance.
         """
         r = low + width
-        return slope_integral(self.branches, low, r, r, *kernels, rtol=rtol, width=width)
+        return slope_integral(self.branches, low, r, r, *kernels, width=width)
 
-    def slip_integral(self, c: Array, r: Array, rtol: float) -> Array:
+    def slip_integral(self, c: Array, r: Array) -> Array:
         """Slip S(c; r) = (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx [length].
 
         S(0; r) is the profile itself. Source: mdr-5, Eqs. (5.40), (5.41).
@@ -388,18 +388,17 @@ class Profile(ABC):
         Parameters
         ----------
         c, r : stick radii and radii, 0 <= c <= r [length], shape (m,).
-        rtol : relative tolerance.
         """
         # Next to the axis arccos(x/r) = pi/2 - x/r, of which the integrals are closed.
-        near = np.maximum(c, np.cbrt(rtol) * r)
-        value = slope_integral(self.branches, near, r, r, arccosine, rtol=rtol)[0]
+        near = np.maximum(c, np.cbrt(EPS) * r)
+        value = slope_integral(self.branches, near, r, r, arccosine)[0]
         if np.any(near > c):
             value += np.pi / 2 * (self.g(near) - self.g(c))
             step = self.force_within(near) - self.force_within(c)
             value -= step / (2 * np.where(r > 0, r, 1.0))
         return 2 / np.pi * value
 
-    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
+    def outer_displacement(self, a: Array, r: Array, coordinate: float) -> Array:
         """Displacement (2/pi) int_0^a (d - g(x))/sqrt(r^2 - x^2) dx of the surface [length].
 
         Source: mdr-5, Eq. (5.75), with the foundation's displacement d - g.
@@ -407,12 +406,11 @@ class Profile(ABC):
         Parameters
         ----------
         a, r : contact radius and radii r >= a [length], shape (m,).
-        rtol : relative tolerance.
         coordinate : contact coordinate of a, which may be the more accurate of the two.
         """
         # Next to the axis arcsin(x/r) = x/r, of which the integral is closed.
-        near = np.minimum(a, np.sqrt(rtol) * r)
-        value = slope_integral(self.branches, near, a, r, arcsine, rtol=rtol)[0]
+        near = np.minimum(a, np.cbrt(EPS * r * r * a))
+        value = slope_integral(self.branches, near, a, r, arcsine)[0]
         value += self.force_within(near) / (2 * r)
         return 2 / np.pi * value
 
@@ -437,7 +435,7 @@ class Profile(ABC):
 
         return power_law_integral(density, coordinate, self.scale) / np.pi
 
-    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+    def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
         """Stress integral (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx [1].
 
         Source: mdr-5, Eqs. (5.68), (5.70), (5.79).
@@ -446,26 +444,25 @@ class Profile(ABC):
         ----------
         annulus : a and c in the contact coordinate.
         radius : radii 0 <= r < a [length], shape (m,).
-        rtol : relative tolerance.
         """
         axis = (radius == 0) & (annulus.inner == 0)
         places = np.where(axis, annulus.outer, radius)
-        total = stress_integral(self.branches, annulus, places, rtol) / np.pi
+        total = stress_integral(self.branches, annulus, places) / np.pi
         if some(axis):
             total[axis] = self.axis_stress(annulus.at(axis).outer)
         return total
 
-    def pressure_kernel_at(self, annulus: Annulus, coordinate: Array, rtol: float) -> Array:
+    def pressure_kernel_at(self, annulus: Annulus, coordinate: Array) -> Array:
         """Stress integral at places given as contact coordinates, zero at the edge [1].
 
         Beyond a flat a radius has fewer digits than the coordinate.
 
         Parameters
         ----------
-        annulus, rtol : see `pressure_kernel`.
+        annulus : see `pressure_kernel`.
         coordinate : contact coordinates up to that of a, shape (m,).
         """
         r, values = self.contact_radius(coordinate), np.zeros(coordinate.shape)
         inside = r < self.contact_radius(annulus.outer)
-        values[inside] = self.pressure_kernel(annulus.at(inside), r[inside], rtol)
+        values[inside] = self.pressure_kernel(annulus.at(inside), r[inside])
         return values

@@ -97,18 +97,18 @@ class FlatPunch(Profile):
         """Zero: the contact radius is constant. Parameters: see `Profile`."""
         return np.zeros((3, span.size))
 
-    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+    def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
         """d/(pi sqrt(a^2 - r^2)); no slip annulus exists.
 
         Source: mdr-5, Eq. (5.34). Parameters: see `Profile`.
         """
         return annulus.width / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
 
-    def slip_integral(self, c: Array, r: Array, rtol: float) -> Array:
+    def slip_integral(self, c: Array, r: Array) -> Array:
         """Zero: all springs slip at once. Parameters: see `Profile`."""
         return np.zeros(r.shape)
 
-    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
+    def outer_displacement(self, a: Array, r: Array, coordinate: float) -> Array:
         """(2/pi) d arcsin(a/r), with the depth as the contact coordinate.
 
         Parameters: see `Profile`.

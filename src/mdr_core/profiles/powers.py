@@ -100,7 +100,7 @@ class Cone(Profile):
         factor = span / (stiffness * b * b * b * 6) / (1 + c) ** 3
         return factor * np.array([3 / c + 1, np.full_like(c, 4.0), 1 + 3 * c])
 
-    def slip_integral(self, c: Array, r: Array, rtol: float) -> Array:
+    def slip_integral(self, c: Array, r: Array) -> Array:
         """t [s - c arccos(c/r)], s = sqrt(r^2 - c^2).
 
         Source: notes, §4. Parameters: see `Profile`.
@@ -108,7 +108,7 @@ class Cone(Profile):
         root = np.sqrt((r - c) * (r + c))
         return self.slope * np.where(c > 0, atan_gap(root, np.where(c > 0, c, 1.0)), root)
 
-    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
+    def outer_displacement(self, a: Array, r: Array, coordinate: float) -> Array:
         """t [a arcsin(a/r) - (r - sqrt(r^2 - a^2))].
 
         Source: notes, §7. Parameters: see `Profile`.
@@ -116,7 +116,7 @@ class Cone(Profile):
         half = a / (r + np.sqrt((r - a) * (r + a)))
         return self.slope * a * (2 * np.arctan(half) - half)
 
-    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+    def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
         """(t/2) [arccosh(a/r) - arccosh(c/r)].
 
         Source: mdr-5, Eq. (5.53). Parameters: see `Profile`.
@@ -199,7 +199,7 @@ class Paraboloid(Profile):
         parts = 5 / c + 6 + 3 * c + squares, 3 + 9 * c + 3 * squares, upper
         return factor * np.array(parts)
 
-    def slip_integral(self, c: Array, r: Array, rtol: float) -> Array:
+    def slip_integral(self, c: Array, r: Array) -> Array:
         """(1/(pi R)) [c (s - c phi) + s^2 phi], s = sqrt(r^2 - c^2), phi = arccos(c/r).
 
         Source: mdr-5, Eq. (5.45). Parameters: see `Profile`.
@@ -208,7 +208,7 @@ class Paraboloid(Profile):
         gap = atan_gap(root, np.where(c > 0, c, 1.0))
         return (c * gap + root * root * np.arctan2(root, c)) / (pi * self.radius)
 
-    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
+    def outer_displacement(self, a: Array, r: Array, coordinate: float) -> Array:
         """(1/(pi R)) [a^2 phi + s (a - s phi)], s = sqrt(r^2 - a^2), phi = arcsin(a/r).
 
         Source: johnson, Eq. (3.42a); notes, §7. Parameters: see `Profile`.
@@ -220,7 +220,7 @@ class Paraboloid(Profile):
     def axis_stress(self, coordinate: Array) -> Array:
         return self.dg(coordinate) / pi
 
-    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+    def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
         """(2/(pi R)) [sqrt(a^2 - r^2) - sqrt(c^2 - r^2)].
 
         Source: mdr-5, Eq. (5.38). Parameters: see `Profile`.

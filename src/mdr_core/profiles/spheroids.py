@@ -84,7 +84,7 @@ class Spheroid(Profile):
         bracket = t * t * t + (1 + t * t) * tanh_gap(self._artanh(coordinate))
         return self.height * self.radius * bracket
 
-    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+    def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
         """(h/(pi R)) [sqrt(1 + z_r^2) y + int arcsinh(z)/(z cosh y) dy] from y(c) to y(a).
 
         With z = x/sqrt(R^2 - x^2) and z^2 + 1 = (z_r^2 + 1) cosh^2 y both the root at r and the
@@ -116,7 +116,7 @@ class Spheroid(Profile):
             covered = np.where(c > r, width * (a + c), (a - r) * (a + r)) / rest_a / rest_c
             sums = np.maximum(top / np.sqrt(rest_c) + bottom / np.sqrt(rest_a), TINY)
             start, length = np.arcsinh(bottom), np.arcsinh(covered * np.sqrt(square) / sums)
-        smooth = integrate(h, length, rtol, start)
+        smooth = integrate(h, length, start)
         return self.height / (pi * big) * stretch * (length + smooth)
 
     def reduced_energy(self, coordinate: Array) -> Array:

@@ -322,8 +322,8 @@ class Tabulated(Profile):
                 slope = slope + factor * shape.weight(x, own) * s / own
         return np.asarray(slope)
 
-    def slip_integral(self, c: Array, r: Array, rtol: float) -> Array:
-        """Closed, whatever the tolerance. Parameters: see `Profile`."""
+    def slip_integral(self, c: Array, r: Array) -> Array:
+        """Closed. Parameters: see `Profile`."""
 
         def under(low: float, at: Array) -> Array:
             return 2 / np.pi * self._spline.under(low, self._end, at, arccosine)
@@ -332,22 +332,22 @@ class Tabulated(Profile):
         for factor, shape in self._flanks:
             past = r > shape.flat_radius
             inner = np.maximum(c[past], shape.flat_radius)
-            value[past] += factor * shape.slip_integral(inner, r[past], rtol)
+            value[past] += factor * shape.slip_integral(inner, r[past])
         return value
 
-    def outer_displacement(self, a: Array, r: Array, rtol: float, coordinate: float) -> Array:
-        """Closed, whatever the tolerance. Parameters: see `Profile`."""
+    def outer_displacement(self, a: Array, r: Array, coordinate: float) -> Array:
+        """Closed. Parameters: see `Profile`."""
         value = 2 / np.pi * self._spline.under(0.0, float(a[0]), r, arcsine)
         for factor, shape in self._flanks:
             if a[0] > shape.flat_radius:
                 beyond = float(a[0] - shape.flat_radius)
-                value += factor * shape.outer_displacement(a, r, rtol, beyond)
+                value += factor * shape.outer_displacement(a, r, beyond)
         return value
 
-    def annulus_integrals(self, low: Array, width: Array, *kernels: Kernel, rtol: float) -> Array:
+    def annulus_integrals(self, low: Array, width: Array, *kernels: Kernel) -> Array:
         """Parameters: see `Profile`."""
         if self._flanks:
-            return super().annulus_integrals(low, width, *kernels, rtol=rtol)
+            return super().annulus_integrals(low, width, *kernels)
         found = [
             self._spline.annulus(c, w, kernels)
             for c, w in zip(low.tolist(), width.tolist(), strict=True)
@@ -381,12 +381,12 @@ class Tabulated(Profile):
         stress = self._integral(np.reciprocal, coordinate) / np.pi
         return stress if self._spline.smooth_tip else stress + np.inf
 
-    def pressure_kernel(self, annulus: Annulus, radius: Array, rtol: float) -> Array:
+    def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
         """Source: notes, §5. Parameters: see `Profile`."""
         a, width, c, *_ = annulus
         total = _of_each(self._spline.stress, (c, a, width), radius)
         for factor, shape in self._flanks:
-            total += factor * stress_integral(shape.branches, annulus, radius, rtol)
+            total += factor * stress_integral(shape.branches, annulus, radius)
         return total / np.pi
 
 

@@ -74,7 +74,7 @@ class Truncated(Flanked):
         return self._flank_stress(coordinate)
 
     def pressure_kernel(
-        self, annulus: Annulus, radius: Array, rtol: float, beyond: Array | None = None
+        self, annulus: Annulus, radius: Array, beyond: Array | None = None
     ) -> Array:
         """In s, of the radii as well if their contact coordinates are given as `beyond`.
 
@@ -87,14 +87,14 @@ class Truncated(Flanked):
         gap = width * (a + c) / where(top > 0, top + low, 1.0)
         ends = Annulus(top, gap, inner, edge, low)
         s = None if beyond is None else self.flank(beyond)[1]
-        return two_root_integral(self.weight, b, radius, ends, rtol=rtol, beyond=s) / pi
+        return two_root_integral(self.weight, b, radius, ends, beyond=s) / pi
 
-    def pressure_kernel_at(self, annulus: Annulus, coordinate: Array, rtol: float) -> Array:
+    def pressure_kernel_at(self, annulus: Annulus, coordinate: Array) -> Array:
         """Parameters: see `Profile`."""
         inside, values = coordinate < annulus.outer, np.zeros(coordinate.shape)
         past = coordinate[inside]
         x, annuli = self.contact_radius(past), annulus.at(inside)
-        values[inside] = self.pressure_kernel(annuli, x, rtol, past)
+        values[inside] = self.pressure_kernel(annuli, x, past)
         return values
 
 

@@ -25,7 +25,7 @@ from mdr_core.fields.tangential import Traction, tractions
 from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Cone, Paraboloid
-from mdr_core.quadrature import composite_rule, gauss_legendre
+from mdr_core.quadrature import STEEP, composite_rule, gauss_legendre
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Chosen, Indices, Numbers
 from mdr_core.validation import require_type
@@ -40,8 +40,6 @@ _JOINED, _FAR = 18, 1.3
 _AT: Final = gauss_legendre(_JOINED)[0]
 # From the values of Legendre polynomials to those of Lagrange's at the nodes.
 _TO_NODES: Final = np.linalg.inv(legendre.legvander(_AT, _JOINED - 1))
-# Powers of s up to this one are resolved on a piece that doubles s.
-_STEEP: Final = 8.0
 # First piece next to the axis of a power, over the contact radius: what it leaves out is rounding
 # error beyond 1e16 times this distance.
 _NEAREST: Final = 1e-32
@@ -129,7 +127,7 @@ class Foundation:
         smooth = min(branch.stop, branch.pole) < inf or isinstance(profile, Cone | Paraboloid)
         first = inf if smooth and not curved else _NEAREST * stop
         near = min(base, branch.opposite_singularity) or first
-        return branch.cuts(start, stop, near, min(1.0, _STEEP / (branch.steepness + curved)))
+        return branch.cuts(start, stop, near, min(1.0, STEEP / (branch.steepness + curved)))
 
     def _slopes(self, x: Array, s: Array, index: Chosen) -> Numbers:
         """(1 + i k) dg/ds at nodes x, s (nodes, m) of the pieces `index` (m,)."""

@@ -22,8 +22,6 @@ from mdr_core.validation import (
 # Part of its distance from the nearest edge or break, or of the rounding error of the contact
 # radius, by which a point is moved off the surface, where the kernels are singular.
 _SURFACE: Final = 1e-18
-# Relative accuracy of the tractions at the origin.
-_AXIS_RTOL: Final = 1e-13
 # Rounding error of a moment, of the largest stress, as measured with room for poles near the edge.
 _ROUNDING: Final = 3e-13
 
@@ -149,7 +147,7 @@ def on_rings(under: Foundation, place: Rings, nu: float) -> StressTensor:
     if origin.any() and not load.profile.has_no_partial_slip:
         # Powers next to a cone approach the tractions there slowly. Om_r/r is a half of V_z.
         whole = load._replace(slope=np.ones_like(load.slope), arcs=())
-        p, tau = (each.stress(np.zeros(1), _AXIS_RTOL) for each in (whole, load))
+        p, tau = (each.stress(np.zeros(1)) for each in (whole, load))
         moments[:, origin], moments[0, origin] = 0.0, -np.pi * (p + 1j * under.friction * tau)
         moments[4, origin] = moments[0, origin] / 2
     found = load.e_star / np.pi * of_moments(moments, (r, depth, e), nu)

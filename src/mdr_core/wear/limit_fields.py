@@ -9,7 +9,7 @@ from mdr_core.abel.annulus import whole
 from mdr_core.doubles import in_blocks
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.wear.limiting_stick import LimitingStick
-from mdr_core.wear.worn_annulus import RTOL, angle
+from mdr_core.wear.worn_annulus import angle
 
 
 def worn_depth(stick_zone: LimitingStick, outer: Array, r: Array) -> Array:
@@ -24,7 +24,7 @@ def worn_depth(stick_zone: LimitingStick, outer: Array, r: Array) -> Array:
     worn &= (step > 0)[:, None]
 
     def values(load: Indices, at: Array) -> Array:
-        lag = profile.slip_integral(c[load], at, RTOL)
+        lag = profile.slip_integral(c[load], at)
         share = np.where(at > 0, 2 / np.pi * angle(c[load], at - c[load]), 1.0)
         # At the outer edge of the annulus the terms cancel but for rounding error.
         return np.asarray(np.maximum(share * step[load] - lag, 0.0))
@@ -43,7 +43,7 @@ def pressure(stick_zone: LimitingStick, e_star: Array, r: Array) -> Array:
     moduli = np.ravel(np.broadcast_to(e_star, radius.shape))
 
     def values(load: Indices, at: Array) -> Array:
-        inner = profile.pressure_kernel(whole(edge[load]), at, RTOL)
+        inner = profile.pressure_kernel(whole(edge[load]), at)
         annulus = step[load] / (np.pi * np.sqrt((c[load] - at) * (c[load] + at)))
         return np.asarray(moduli[load] * (inner + annulus))
 

@@ -16,9 +16,6 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import gauss_legendre
 from mdr_core.typing import Array
 
-# Relative tolerance of the integrals, about 500 times the rounding error. A looser one would save
-# less than a tenth of the time, and the worn depth is a difference.
-RTOL: Final = 1e-13
 # As near to the end of a profile as its functions are evaluated: they may be infinite there.
 ALMOST: Final = 1 - 1e-9
 # Gauss-Legendre nodes of the area of a segment, over an angle of at most pi/2.
@@ -49,7 +46,7 @@ def worn_volume(profile: Profile, stick: Array, width: Array, step: Array) -> Ar
     step : d - g(c) [length], shape (n,).
     """
     constant = _segment(stick, _root(stick, width))
-    inner = profile.annulus_integrals(stick, width, _segment, rtol=RTOL)[0]
+    inner = profile.annulus_integrals(stick, width, _segment)[0]
     return np.asarray(4 * (step * constant - inner))
 
 
@@ -69,7 +66,7 @@ def width_where_worn(profile: Profile, stick: Array, step: Array, start: Array) 
 
     def mean_rise(width: Array) -> tuple[Array, Array]:
         kernels = arccosine, _rate
-        total, growth = profile.annulus_integrals(stick, width, *kernels, rtol=RTOL)
+        total, growth = profile.annulus_integrals(stick, width, *kernels)
         theta, edge = angle(stick, width), (stick + width) * _root(stick, width)
         return total / theta, width * (growth / total - stick / edge / theta)
 

@@ -29,7 +29,7 @@ from mdr_service.schemas.fields import SHEAR_FIELDS, FieldQuery, LoadedQuery, St
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.settings import SETTINGS
 
-# Closed form wherever the equivalent profile is: these take no tolerance.
+# Closed form wherever the equivalent profile is.
 _FOUNDATION: Final = frozenset({"foundation_load", "foundation_shear"})
 
 End = tuple[NormalContact, TangentialContact | ContactState | None]
@@ -67,10 +67,9 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     contact, partial = end = at_end(source)
     radius = np.array(query.radius or fields.grid(partial or contact, query.points))
     values: Result = {}
-    # The error of the edges adds to that of the integrals.
-    shape, rtol = (query.loads, radius.size), max(query.rtol / 2, TIGHTEST)
+    shape = query.loads, radius.size
     for name in query.quantities:
-        rows = broadcast(field(name, end, radius, rtol), shape)
+        rows = broadcast(field(name, end, radius), shape)
         values[name] = np.ascontiguousarray(rows)
     infinite: dict[str, Flags] = {}
     if not all(every(np.isfinite(rows)) for rows in values.values()):
@@ -80,7 +79,8 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         infinite = dict.fromkeys(("pressure", "shear_stress"), at_singular)
         checked(query, values, infinite)
     method = _method(source, contact, query.quantities)
-    integrated = 0.0 if method == "closed_form" else rtol
+    # The error of the edges adds to that of the integrals.
+    integrated = 0.0 if method == "closed_form" else max(query.rtol / 2, TIGHTEST)
     names = set(query.quantities)
     if "shear_stress" in names:
         # Its edges include those of the pressure.
@@ -94,7 +94,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     return {"radius": radius} | values | response_metadata(query, source, method, error, warnings)
 
 
-def field(name: str, end: End, radius: Array, rtol: float) -> Array:
+def field(name: str, end: End, radius: Array) -> Array:
     """Return a field [load][radius] of a contact, or of the end of a load history.
 
     Parameters
@@ -102,12 +102,10 @@ def field(name: str, end: End, radius: Array, rtol: float) -> Array:
     name : function of `mdr_core.fields`, a quantity of a stress query.
     end : result of `at_end`.
     radius : radii r >= 0 [length], shape (m,).
-    rtol : relative accuracy, where the field is integrated.
     """
     contact, partial = end
-    tolerance = {} if name in _FOUNDATION else {"rtol": rtol}
     source = partial if name in SHEAR_FIELDS else contact
-    return np.atleast_2d(getattr(fields, name)(source, radius, **tolerance))
+    return np.atleast_2d(getattr(fields, name)(source, radius))
 
 
 def at_end(source: Contact) -> End:
