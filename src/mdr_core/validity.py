@@ -20,9 +20,21 @@ from mdr_core.results import Results
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes
 
-# Relative error of the half-space approximation above which it is reported, with room for rounding:
-# a cone of slope 0.1 on incompressible bodies has one per cent.
-_HALF_SPACE_ERROR: Final = 0.01 * (1 + 1e-9)
+# Sizes above which each limit is reported; judgements.
+_LIMITS: Final = {
+    # Contact radius over the last radius of a table.
+    "table_end": 0.95,
+    # Deviation of a table's profile from its points over the depth.
+    "smoothed": 1e-3,
+    # Relative error of the half-space approximation.
+    "half_space": 0.01,
+    # Contact radius over the thickness of a body.
+    "thin_body": 0.1,
+    # |beta|, by which normal and tangential contact are coupled.
+    "elastic_similarity": 0.05,
+}
+# Room for rounding: a cone of slope 0.1 on incompressible bodies has an error of one per cent.
+_ROOM: Final = 1 + 1e-9
 # Relative error by the neglected radial displacement, over |beta| and the slope of a cone. Source:
 # hay, by F/F_Sneddon to first order; a paraboloid has three quarters.
 _RADIAL: Final = 0.63
@@ -32,8 +44,6 @@ _ASSUMED_BETA: Final = (1 - 2 * ASSUMED_RATIO) / (2 * (1 - ASSUMED_RATIO))
 # Compliance that a half-space lacks, over its own 0.46/(E b): that of a cylinder of radius b and
 # length 6 b is L/(pi E b^2).
 _WALL: Final = 3.0
-# Contact radius over the thickness of a body from which it is reported, with room for rounding.
-_THIN: Final = 0.1 * (1 + 1e-9)
 # Relative change of forces at a given displacement by transverse slip, and of displacements under
 # forces up to 0.998 of full slip, over (nu/(4 - 2 nu))^2. Source: notes, §8.
 _TRANSVERSE: Final = 0.2
@@ -41,16 +51,8 @@ _TRANSVERSE: Final = 0.2
 _LISTED: Final = 5
 # Poisson's ratio of incompressible bodies.
 _INCOMPRESSIBLE: Final = 0.5
-# Part of a table's length from which its end is near; a judgement.
-_NEAR_END: Final = 0.95
-# Deviation of a table's profile from its points, over the depth, from which it is reported; a
-# judgement.
-_DEVIATION: Final = 1e-3
-# |beta| from which normal and tangential contact are noticeably coupled, by a relative error of
-# order beta; a judgement.
-_SIMILARITY: Final = 0.05
-# E*/G* of isotropic bodies with Poisson's ratios from -1 to 1/2, with room for rounding.
-_MODULI: Final = (0.75 * (1 - 1e-9), 1.5 * (1 + 1e-9))
+# E*/G* of isotropic bodies with Poisson's ratios from -1 to 1/2.
+_MODULI: Final = (0.75, 1.5)
 
 
 class Finding(NamedTuple):
@@ -63,6 +65,14 @@ class Finding(NamedTuple):
     """Size in each case; see `Notice`."""
     limit: float | None = None
     instead: Remedy | None = None
+
+
+def _above_limit(
+    code: str, size: Array, message: Callable[[], str], instead: Remedy | None = None
+) -> Finding:
+    """Return the finding of the cases whose size is above the limit of a code."""
+    limit = _LIMITS[code]
+    return Finding(code, size > _ROOM * limit, message, size, limit, instead)
 
 
 class LoadedContact(Protocol):
@@ -178,7 +188,7 @@ def table_end(contact: LoadedContact) -> Finding:
             "extend the table beyond the contact edge"
         )
 
-    return Finding("table_end", part > _NEAR_END, message, part, _NEAR_END, "longer_table")
+    return _above_limit("table_end", part, message, "longer_table")
 
 
 def smoothed(contact: LoadedContact, profile: Tabulated) -> Finding:
@@ -196,7 +206,7 @@ def smoothed(contact: LoadedContact, profile: Tabulated) -> Finding:
             f"is {100 * extremes(part)[1]:.2g} % of the depth: see data_error"
         )
 
-    return Finding("smoothed", part > _DEVIATION, message, part, _DEVIATION)
+    return _above_limit("smoothed", part, message)
 
 
 def of_normal_contact(
@@ -244,8 +254,7 @@ def of_normal_contact(
             "a real material yields there under any load; round the tip or edge"
         )
 
-    exceeds = error > _HALF_SPACE_ERROR
-    steep = Finding("half_space", exceeds, message, error, 0.01, "finite_elements")
+    steep = _above_limit("half_space", error, message, "finite_elements")
     plastic = Finding("plastic", _infinite(contact, yields), places, instead="rounded_tip")
     return [steep, _thin_body(contact, material), plastic]
 
@@ -262,7 +271,7 @@ def _thin_body(contact: LoadedContact, material: Material | None) -> Finding:
             "elements"
         )
 
-    return Finding("thin_body", part > _THIN, message, part, 0.1, "finite_elements")
+    return _above_limit("thin_body", part, message, "finite_elements")
 
 
 def _layer(contact: LoadedContact, material: Material | None) -> tuple[Array, Array]:
@@ -314,18 +323,15 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Findi
     Source: mdr-5, Eq. (5.3); notes, §8.
     """
     ratio = number(1.0) * e_star / g_star
-    impossible = (ratio < _MODULI[0]) | (ratio > _MODULI[1])
+    impossible = (_ROOM * ratio < _MODULI[0]) | (ratio > _ROOM * _MODULI[1])
     if beta is not None and not some(impossible):
-        coupled = number(abs(beta)) > _SIMILARITY
         message = (
             f"the bodies are not elastically similar (Dundurs' beta = {beta:.3g}): the model "
             "neglects the coupling of normal and tangential contact, a relative error of this "
             "order in stresses, and of a third of its square in forces and displacements"
         )
-        size = abs(beta), _SIMILARITY
-        return Finding(
-            "elastic_similarity", coupled, lambda: message, *size, instead="boundary_elements"
-        )
+        size = number(abs(beta))
+        return _above_limit("elastic_similarity", size, lambda: message, "boundary_elements")
 
     def unphysical() -> str:
         return (
@@ -335,8 +341,7 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Findi
         )
 
     value = float(np.extract(impossible, ratio)[:1].sum())
-    limit = round(_MODULI[value > 1], 6)
-    return Finding("impossible_moduli", impossible, unphysical, value, limit)
+    return Finding("impossible_moduli", impossible, unphysical, value, _MODULI[value > 1])
 
 
 def infinite_maximum(contact: LoadedContact) -> Finding:
