@@ -39,9 +39,10 @@ _SAMPLES: Final = 400
 # where g' may be infinite as one over this root.
 _ROOTS, _SHARES = composite_rule(5)
 _NODES, _WEIGHTS = np.square(_ROOTS), 2 * _ROOTS * _SHARES
-# Change of the displacements, over the largest, at which the iteration ends, and the sweeps that it
-# may take: 20 for a solid sphere, more if the contact point oscillates.
-_CONVERGED, _SWEEPS = 1e-13, 100
+# Change of the displacements, over the largest, at which the iteration ends: rounding errors may
+# keep a change of 1e-11. Sweeps that it may take: 20 for a solid sphere, more if the contact point
+# oscillates.
+_CONVERGED, _SWEEPS = 1e-10, 100
 
 
 @dataclass(frozen=True, eq=False, repr=False)

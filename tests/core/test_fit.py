@@ -195,13 +195,13 @@ def test_known_modulus_leaves_the_contact_point() -> None:
 
 
 def test_correlation_of_modulus_and_contact_point() -> None:
-    # About 0.91 for a sphere, 0.96 for a cone: a guessed contact point misleads.
+    # Of F ~ d^m and its slope at equal steps of d: a guessed contact point misleads.
     random = np.random.default_rng(1)
-    for shape, low, high in (("paraboloid", 0.88, 0.95), ("cone", 0.94, 0.98)):
+    for shape, exact in (("paraboloid", np.sqrt(8) / 3), ("cone", np.sqrt(15) / 4)):
         force = forces(SHAPES[shape])
         noisy = force + 0.01 * force.max() * random.standard_normal(force.size)
         found = fitted(SHAPES[shape], noisy)
-        assert low < found.correlation[0, 1] < high
+        assert found.correlation[0, 1] == pytest.approx(exact, rel=0, abs=5e-3)
 
 
 def study(shape: Profile, fitted_shape: Profile, noise: float, curves: int) -> Array:

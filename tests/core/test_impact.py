@@ -176,6 +176,14 @@ def test_one_impact_of_several_is_the_same_alone() -> None:
         assert alone.duration == several.duration[i]
 
 
+def test_rounding_errors_of_oscillations_are_not_refused() -> None:
+    v, mass = 3e-5, 0.03
+    w = v * np.array([0.05, 0.2, 0.4, 0.7, 1.0])
+    hit = solved(mdr.Paraboloid(0.01), v, w, tangential_mass=mass)
+    lost = mass * (w**2 - hit.tangential_rebound_velocity**2) / 2
+    assert hit.dissipated_energy / (mass * w**2) == pytest.approx(lost / (mass * w**2), abs=5e-3)
+
+
 def test_rapid_oscillations_are_refused() -> None:
     with pytest.raises(mdr.AccuracyError, match="oscillates"):
         solved(mdr.Cone(0.3), 0.1, 0.01, tangential_mass=1e-4)
