@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
 from mdr_core import validation
+from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.elementwise import full, number, some, where
 from mdr_core.equivalent_1d import coordinate_from_radius
 from mdr_core.errors import InputError, Notice
@@ -46,8 +47,6 @@ _IN_PIECE: Final = 9
 _TABOR: Final = sqrt(2 * pi) * (9 * pi / 8) ** (1 / 6)
 # Tabor's number from which JKR holds. Source: johnson-greenwood.
 _JKR: Final = 5.0
-# Rounding error of a load, and of a contact coordinate, relative [1].
-_ROUNDING: Final = 2.0**-49
 # Distance of a g'/Delta_l from pull-off, over the root of the rounding error, below which the error
 # of the contact radius is of that order: room for a slow change of phi.
 _NEAR: Final = 0.1
@@ -127,12 +126,12 @@ class Curve:
         """Return the outermost stable coordinate of each load (n,), and the most states of one."""
         low, high = self.stable[name]
         least = self.load(name, low)
-        holds = load[:, None] >= least - _ROUNDING * np.abs(least)
+        holds = load[:, None] >= least - ROUNDING * np.abs(least)
         holds &= load[:, None] <= self.load(name, high)
         branch = low.size - 1 - np.argmax(holds[:, ::-1], axis=1)
         found = low[branch]
         for k in np.unique(branch):
-            own = (branch == k) & (load - least[k] > _ROUNDING * abs(least[k]))
+            own = (branch == k) & (load - least[k] > ROUNDING * abs(least[k]))
             inside = self._nodes[(self._nodes > low[k]) & (self._nodes < high[k])]
             stops = np.concatenate([low[k : k + 1], inside, high[k : k + 1]])
             values = np.maximum.accumulate(self.load(name, stops))
@@ -222,7 +221,7 @@ class AdhesiveContact(NormalContact):
         if self.profile.has_no_partial_slip:
             return full(inf, self.coordinate)
         excess = self.curve.excess(_SHARES[name], self.coordinate)
-        return where(excess > self.profile.steepness * _ROUNDING, excess, 0.0)
+        return where(excess > self.profile.steepness * ROUNDING, excess, 0.0)
 
     @cached_property
     def elastic_energy(self) -> Array:
@@ -245,7 +244,7 @@ class AdhesiveContact(NormalContact):
         """Relative error of the contact radius, of the order of a root next to pull-off [1]."""
         rounding, name = self.profile.rounding_at(self.coordinate), self.control
         if name not in _SHARES:
-            return full(2.0**-52, self.coordinate)
+            return full(EPS, self.coordinate)
         punch = self.reference.normal_stiffness if name == "normal_force" else 1.0
         size = 1 + getattr(self.reference, name) / (punch * self.curve.retraction(self.coordinate))
         return rounding * size / np.maximum(self._excess(name), _NEAR * np.sqrt(rounding))
@@ -367,7 +366,7 @@ def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, 
     if name == "contact_radius":
         validation.require_positive(("load", name), load)
         at = coordinate_from_radius(profile, load)
-        bad = np.asarray(~(curve.excess(_SHARES["indentation_depth"], at) >= -sqrt(_ROUNDING)))
+        bad = np.asarray(~(curve.excess(_SHARES["indentation_depth"], at) >= -sqrt(ROUNDING)))
         if some(bad):
             low, _ = curve.stable["indentation_depth"]
             radius = profile.contact_radius(low[np.argmin(curve.load("indentation_depth", low))])
@@ -378,7 +377,7 @@ def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, 
     unit = e_star if of_force else 1.0
     amount, least = load / unit, curve.least[name]
     # Under a tip as sharp as the root of r the contact vanishes at zero load.
-    below = np.asarray(amount < least * (1 + _ROUNDING) if least else amount <= 0)
+    below = np.asarray(amount < least * (1 + ROUNDING) if least else amount <= 0)
     if some(below):
         pull_off = "pull-off force" if of_force else "pull-off depth"
         where = f"{'below' if least else 'not above'} the {pull_off}, {least * unit:.9g}"

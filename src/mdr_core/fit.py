@@ -21,7 +21,7 @@ from scipy.optimize import least_squares
 from scipy.special import chdtrc, fdtrc
 
 from mdr_core import adhesion, normal, validity
-from mdr_core.doubles import TINY
+from mdr_core.doubles import EPS, TINY
 from mdr_core.errors import InputError, Notice
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
@@ -35,17 +35,12 @@ from mdr_core.validation import (
 
 PARAMETERS: Final = ("e_star", "contact_point", "force_offset", "work_of_adhesion")
 """Quantities that can be fitted."""
-# Contact points that are tried first, part of the range of depths before the first of them, and
-# points of the curve that are used there.
-_TRIED, _BEFORE, _USED = 120, 1.0, 100
-# Relative change of the sum of squares, and of the parameters, at which the search ends.
-_CONVERGED: Final = 1e-15
+# Contact points that are tried first, at points of the curve of about this number.
+_TRIED: Final = 100
 # Retractions that are tried first, at the contact radius of the whole range of depths and over it.
 _RETRACTIONS: Final = np.logspace(-3, 0.5, 15)
 # Multiple of the pull-off depth beyond which no point is in contact.
 _AFTER: Final = 1.5
-# Points in contact, at least, in addition to the parameters.
-_SPARE: Final = 2
 # Polynomials over the depth that the residuals of a right shape do not contain, and the probability
 # of a warning that is false.
 _DEGREES, _FALSE_ALARM = 8, 0.01
@@ -218,7 +213,7 @@ def _curve(indentation_depth: ArrayLike, normal_force: ArrayLike) -> tuple[Array
 
 
 def _require_points(touching: int, model: "_Model") -> None:
-    if touching < len(model.fit) + _SPARE:
+    if touching <= len(model.fit):
         ends = (model.profile.largest_loads or (inf,))[0]
         remedy = "measure deeper, or more points"
         if ends < np.ptp(model.depth):
@@ -309,13 +304,13 @@ class _Model:
             inf if self.profile.largest_loads is None else float(self.profile.largest_loads[0])
         )
         if "contact_point" in self.fit:
-            # The curve has to stay on the profile.
-            limits = max(low - _BEFORE * (high - low), high - deepest), high
+            # From as far before the curve as it is long; the curve has to stay on the profile.
+            limits = max(2 * low - high, high - deepest), high
             tried = np.linspace(*limits, _TRIED, endpoint=False)
         if "work_of_adhesion" in self.fit:
             reach = normal.solve(self.profile, 1.0, indentation_depth=min(high - low, deepest))
             works = (_RETRACTIONS * (high - low)) ** 2 / (2 * pi * reach.contact_radius)
-        some = np.argsort(self.depth)[:: max(1, self.depth.size // _USED)]
+        some = np.argsort(self.depth)[:: max(1, self.depth.size // _TRIED)]
         used = {name: getattr(self, name)[some] for name in ("depth", "force", "touches")}
         coarse = replace(self, **used)
         starts: list[tuple[float, _Parameters]] = []
@@ -375,8 +370,8 @@ class _Model:
                 found = least_squares(
                     *(residual, first, jacobian, bounds),
                     x_scale="jac",
-                    ftol=_CONVERGED,
-                    xtol=_CONVERGED,
+                    ftol=EPS,
+                    xtol=EPS,
                     gtol=None,
                 )
         except (ValueError, np.linalg.LinAlgError):
