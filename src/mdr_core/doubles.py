@@ -12,6 +12,10 @@ ADJACENT: Final = 4 * EPS
 """Relative distance within which two numbers are the same but for a few roundings."""
 ROUNDING: Final = 16 * EPS
 """Relative rounding error of a short sum of products, and of a root of one, with room."""
+LARGEST: Final = 1e290
+"""Largest result, and inverse of the smallest, of which sums of a few products are exact."""
+LOG_RANGE: Final = 600.0
+"""Bound on the logarithm of a ratio of radii: exp(-600) of 1e-50 is next to underflow."""
 # Values evaluated at once: arrays above 128 kB, here of complex numbers, are mapped each time.
 _AT_ONCE: Final = 8_192
 

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.doubles import EPS
+from mdr_core.doubles import EPS, LARGEST
 from mdr_core.elementwise import every, some, where
 from mdr_core.errors import DefectError
 from mdr_core.typing import Array
@@ -32,8 +32,6 @@ _CLOSE: Final = 1e-8
 _STRIDE: Final = 16.0
 # Largest step in log.
 _MAX_LOG_STEP: Final = 30.0
-# Bound of the roots: beyond it the root or its function value is not representable.
-_LARGEST: Final = 1e307
 
 
 def invert(
@@ -95,12 +93,12 @@ def invert(
                 break
             low = where(value < goal, s, low)
             high = where(value > goal, s, high)
-            last = short | ~((s > 1 / _LARGEST) & (s < _LARGEST))
+            last = short | ~((s > 1 / LARGEST) & (s < LARGEST))
             usable = (
                 (proposed > low) & (proposed < high) & (count < _ALONE or count % 2 == 1)
             ) | last
             moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))
-            moved = where(moved < _LARGEST, where(moved > 1 / _LARGEST, moved, 0.0), inf)
+            moved = where(moved < LARGEST, where(moved > 1 / LARGEST, moved, 0.0), inf)
             # A converged root stays: it does not depend on how long the others take.
             s = where(done, s, moved)
             done = done | settling | converged

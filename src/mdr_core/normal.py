@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import validity
-from mdr_core.doubles import ADJACENT, ROUNDING
+from mdr_core.doubles import ADJACENT, LARGEST, ROUNDING
 from mdr_core.elementwise import broadcast, common_shape, where
 from mdr_core.equivalent_1d import coordinate_from_radius, load_and_slope
 from mdr_core.errors import InputError, Notice
@@ -28,9 +28,6 @@ from mdr_core.validation import (
 )
 
 CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
-# Energies scale with coordinate^(2 n + 1); this bound on the decades of that power keeps them
-# representable beside factors of the accepted magnitudes.
-_DECADES: Final = 150.0
 # Distance from a root of g', over the root of the rounding error, up to which its slope is that at
 # the distance: there the error of the contact radius is of second order.
 _NEAR_ROOT: Final = 0.25
@@ -267,7 +264,8 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
             amount = load / e_star if of_force else load
             coordinate = profile.coordinate_from_load(amount, of_force=of_force)
     low, high = extremes(coordinate)
-    reach = 10 ** (_DECADES / (2 * profile.steepness + 1))
+    # Energies scale with coordinate^(2 n + 1), beside factors of the accepted magnitudes.
+    reach = LARGEST ** (0.5 / (2 * profile.steepness + 1))
     if not 1 / reach < low <= high < reach:
         # No other coordinate follows from a load that is negative or not finite.
         require_not_negative(("load", name), load)

@@ -14,19 +14,19 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.special import roots_legendre
 
-from mdr_core.doubles import EPS, in_blocks
+from mdr_core.doubles import EPS, LOG_RANGE, in_blocks
 from mdr_core.typing import Array, Indices
 
 # h(y, index): y has shape (nodes, m) and may be overwritten; index (m,) selects the integrals. The
 # values have the shape (..., nodes, m).
 Integrand = Callable[[Array, Indices], Array]
 
-# Length of a piece in a strip of pi/2, and its nodes, which leave rounding error.
-_PIECE, _NODES = 2.0, 20
+PIECE: Final = 2.0
+"""Length of a piece in a strip of pi/2."""
+NODES: Final = 20
+"""Nodes of such a piece, which leave rounding error."""
 STEEP: Final = 8.0
 """Growth up to which a piece has that length."""
-# Logarithm of the ratio of radii that is considered: exp(-600) of 1e-50 is next to underflow.
-_LOG_RANGE: Final = 600.0
 
 
 @lru_cache(maxsize=64)
@@ -69,14 +69,14 @@ def integrate(
     lower : lower ends, shape (m,); None for zero.
     growth : power of exp|Re y| that h resembles over part of the interval.
     """
-    piece = _PIECE / max(growth / STEEP, 1.0)
+    piece = PIECE / max(growth / STEEP, 1.0)
     # A length that is not finite gives an integral that is not, in one piece.
     counts = np.maximum(np.ceil(np.where(np.isfinite(length), length, 0.0) / piece), 1).astype(int)
     result: Array | None = None
     for count in np.flatnonzero(np.bincount(counts)).tolist():
         index = (counts == count).nonzero()[0]
         start = None if lower is None else lower[index]
-        part = _apply(h, composite_rule(_NODES, count), start, length[index], index)
+        part = _apply(h, composite_rule(NODES, count), start, length[index], index)
         if result is None:
             result = np.empty((*part.shape[:-1], length.size))
         result[..., index] = part
@@ -130,4 +130,4 @@ def piecewise_rule(points: int, ends: Array) -> tuple[Array, Array]:
 
 def reach_of_power(exponent: float) -> float:
     """Return log(x0/x) at which (x/x0)^exponent is negligible, or the range of doubles ends."""
-    return min(-log(EPS) / exponent, _LOG_RANGE) if exponent > 0 else _LOG_RANGE
+    return min(-log(EPS) / exponent, LOG_RANGE) if exponent > 0 else LOG_RANGE

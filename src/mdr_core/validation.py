@@ -8,14 +8,11 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mdr_core.doubles import LARGEST
 from mdr_core.elementwise import some
 from mdr_core.errors import InputError
 from mdr_core.typing import Array, Flags, Parameter
 
-# Smallest result of which sums of a few products keep full precision.
-_SMALLEST: Final = 1e-290
-# Largest such result.
-_LARGEST: Final = 1e290
 # Sentences about values, which the service uses as well.
 BODIES: Final = 'exactly two bodies are needed, of which one can be "rigid"'
 FINITE: Final = "must be finite"
@@ -165,7 +162,7 @@ def require_representable(path: tuple[str | int, ...], used: Flags, *results: Ar
     """
     bad = np.zeros(used.shape, dtype=bool)
     for values in results:
-        bad |= used & ~((values > _SMALLEST) & (values < _LARGEST))
+        bad |= used & ~((values > 1 / LARGEST) & (values < LARGEST))
     if bad.any():
         detail = (
             "the contact under this load leaves the range of double precision: change the load, or "

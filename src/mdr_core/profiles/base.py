@@ -20,7 +20,7 @@ from mdr_core.abel.displacement import (
     slope_integral,
 )
 from mdr_core.abel.stress import stress_integral
-from mdr_core.doubles import EPS
+from mdr_core.doubles import EPS, LOG_RANGE
 from mdr_core.elementwise import full, number, some, where
 from mdr_core.errors import Notice
 from mdr_core.inversion import Function, invert
@@ -45,8 +45,6 @@ FIELDS: Final = ("pressure", "shear_stress", "slip", "normal_displacement")
 _SHAPE: Final = ("f", "df", "g", "dg", "r", "breaks", "domain", "infinite_pressure_radii")
 _FOR_USERS: Final = ("kind", "formula", "closed_forms", "notices", *_SHAPE)
 _NO_BREAKS: Final = np.empty(0)
-# Largest logarithm of a radius over the scale of a profile.
-_MAX_LOG: Final = 300.0
 
 
 class Profile(ABC):
@@ -305,7 +303,7 @@ class Profile(ABC):
             at_scale = load(scale)
             ratio = np.log(target / at_scale) * (at_scale / (scale * slope(scale)))
             # Where a load hardly rises there, its power leads out of the range of doubles.
-            start = scale * np.exp(np.clip(ratio, -_MAX_LOG, _MAX_LOG))
+            start = scale * np.exp(np.clip(ratio, -LOG_RANGE, LOG_RANGE))
             start = where(start > 0, start, scale)
         low, high = (full(end, start) for end in (0.0, self.domain))
 

@@ -7,12 +7,11 @@ doubles.
 from collections.abc import Callable, Iterable
 from itertools import pairwise
 from math import copysign, exp, inf, log
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from scipy.optimize import brentq
 
-# Bound on the logarithm of a radius: beyond lengths of 1e-100 to 1e100 there is no root.
-_MAX_LOG: Final = 300.0
+from mdr_core.doubles import LOG_RANGE
 
 
 class LogTerm(NamedTuple):
@@ -38,10 +37,10 @@ def first_negative_radius(terms: LogTerms) -> float:
 
     The terms ascend in the exponent.
     """
-    ends = [-_MAX_LOG, *_log_roots(terms), _MAX_LOG]
+    ends = [-LOG_RANGE, *_log_roots(terms), LOG_RANGE]
     for start, end in pairwise(ends):
         if _scaled_sum(terms, (start + end) / 2) < 0:
-            return exp(start) if start > -_MAX_LOG else 0.0
+            return exp(start) if start > -LOG_RANGE else 0.0
     return inf
 
 
@@ -65,7 +64,7 @@ def _log_roots(terms: LogTerms) -> list[float]:
     derivative = tuple(
         LogTerm(sign, size + log(exponent - lowest), exponent) for sign, size, exponent in terms[1:]
     )
-    turns = [-_MAX_LOG, *_log_roots(derivative), _MAX_LOG]
+    turns = [-LOG_RANGE, *_log_roots(derivative), LOG_RANGE]
     return [
         float(brentq(lambda u: _scaled_sum(terms, u), start, end, xtol=1e-15))
         for start, end in pairwise(turns)

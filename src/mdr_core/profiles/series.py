@@ -4,20 +4,17 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import exp, inf, isfinite, log, pi
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar
 
 import numpy as np
 
-from mdr_core.doubles import EPS
+from mdr_core.doubles import EPS, LOG_RANGE
 from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.power_functions import kappa, power, power_slope
 from mdr_core.profiles.power_sums import first_negative_radius, log_terms
 from mdr_core.typing import Array, Flags, Parameter
-
-# Bound on the logarithm of a starting radius, which nearly equal exponents leave undetermined.
-_MAX_LOG: Final = 70.0
 
 
 @dataclass(frozen=True)
@@ -119,7 +116,8 @@ class Series(Profile):
         """Radius at which the terms of lowest and highest exponent are about equal."""
         (c, n), (k, m) = self._powers[0], self._powers[-1]
         crossing = (log(abs(c)) - log(abs(k))) / max(m - n, 0.5)
-        return exp(min(max(crossing, -_MAX_LOG), _MAX_LOG))
+        # Nearly equal exponents leave it undetermined.
+        return exp(min(max(crossing, -LOG_RANGE), LOG_RANGE))
 
     def _total(self, parts: Iterable[Array], factor: Array | float = 1.0) -> Array:
         """Sum of the terms of a positive total, times a factor; infinity where they overflow."""

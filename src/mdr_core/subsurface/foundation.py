@@ -19,34 +19,25 @@ from numpy.polynomial import legendre
 
 from mdr_core import tangential
 from mdr_core.abel.displacement import Branch
-from mdr_core.doubles import in_blocks
+from mdr_core.doubles import EPS, LARGEST, in_blocks
 from mdr_core.errors import InputError
 from mdr_core.fields.tangential import Traction, tractions
 from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Cone, Paraboloid
-from mdr_core.quadrature import STEEP, composite_rule, gauss_legendre
+from mdr_core.quadrature import NODES, PIECE, STEEP, composite_rule, gauss_legendre
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Chosen, Indices, Numbers
 from mdr_core.validation import require_type
 
 Contact: TypeAlias = NormalContact | TangentialContact | ContactState
 
-# Longest panel in t, whose singularities lie pi/2 beside the axis or log(2) beyond an end; nodes.
-_PANEL, _NODES = 2.0, 14
-# Nodes of a block in x^2, and the least distance of a far singularity from its middle over its
-# length: interpolation errs by 5^-n.
-_JOINED, _FAR = 18, 1.3
-_AT: Final = gauss_legendre(_JOINED)[0]
+# Least distance of a far singularity from the middle of a block in x^2, over its length:
+# interpolation errs by 5^-n.
+_FAR: Final = 1.3
+_AT: Final = gauss_legendre(NODES)[0]
 # From the values of Legendre polynomials to those of Lagrange's at the nodes.
-_TO_NODES: Final = np.linalg.inv(legendre.legvander(_AT, _JOINED - 1))
-# First piece next to the axis of a power, over the contact radius: what it leaves out is rounding
-# error beyond 1e16 times this distance.
-_NEAREST: Final = 1e-32
-# Part of s whose square is less than a rounding error of s^2.
-_SMALL: Final = 1e-9
-# Largest contact radius, and inverse of the smallest one: 1/rho^3 is a double.
-_LARGEST: Final = 1e95
+_TO_NODES: Final = np.linalg.inv(legendre.legvander(_AT, NODES - 1))
 
 
 class _Blocks(NamedTuple):
@@ -76,7 +67,8 @@ class Foundation:
         self.slips_from = load.radius[:-1][self._anchors.any(axis=0)].min(initial=inf)
         self.sheared = bool(self.slips_from < inf)
         self.loaded = bool(load.coordinate[-1] > 0)
-        if self.loaded and not 1 / _LARGEST < load.radius[-1] < _LARGEST:
+        # The kernel 1/rho^3 is a double.
+        if self.loaded and not 1 / LARGEST < load.radius[-1] ** 3 < LARGEST:
             raise InputError(
                 ("profile",), "the contact radius leaves the range of double precision"
             )
@@ -113,7 +105,7 @@ class Foundation:
         s_low = np.sqrt((low - base) * (low + base))
         s_high = np.sqrt(s_low * s_low + width)
         self._ends = np.array([s_low, s_high])
-        u, shares = (part[:, None] for part in composite_rule(_NODES, 1))
+        u, shares = (part[:, None] for part in composite_rule(NODES, 1))
         step = width / (s_low + s_high)
         s = s_low + step * u
         x = np.sqrt(base * base + s * s)
@@ -125,7 +117,7 @@ class Foundation:
         base, curved, profile = branch.base, bool(self._anchors[1].any()), self.load.profile
         start, stop = max(base, branch.start), min(branch.stop, self.load.radius[-1])
         smooth = min(branch.stop, branch.pole) < inf or isinstance(profile, Cone | Paraboloid)
-        first = inf if smooth and not curved else _NEAREST * stop
+        first = inf if smooth and not curved else EPS * stop
         near = min(base, branch.opposite_singularity) or first
         return branch.cuts(start, stop, near, min(1.0, STEEP / (branch.steepness + curved)))
 
@@ -170,11 +162,11 @@ class Foundation:
         root = np.sqrt(above[0] + s_low * s_low)
         # Rounding may put a singularity that is far nearer to the axis than the piece on the line:
         # then any q serves that is small beside s.
-        p, q = root.real, np.where(root.imag == 0, _SMALL * s_low, root.imag)
+        p, q = root.real, np.where(root.imag == 0, EPS * s_low, root.imag)
         bottom, top = np.arcsinh(-(above / (root + self._ends[:, index])).real / q)
-        count = np.maximum(np.ceil((top - bottom) / _PANEL), 1).astype(int)
+        count = np.maximum(np.ceil((top - bottom) / PIECE), 1).astype(int)
         for panels in np.unique(count):
-            u, shares = (part[:, None] for part in composite_rule(_NODES, int(panels)))
+            u, shares = (part[:, None] for part in composite_rule(NODES, int(panels)))
             same = np.flatnonzero(count == panels)
             for part in (same[rows] for rows in in_blocks(same.size, u.size)):
                 length = top[part] - bottom[part]
@@ -206,7 +198,7 @@ def _merged(blocks: _Blocks) -> _Blocks:
     past = (1 + _AT[:, None]) / 2 * width
     x = np.sqrt(low.low**2 + past)
     known = np.concatenate([low.past, low.width + high.past]) / np.where(width > 0, width, 1.0)
-    shares = legendre.legvander(2 * known - 1, _JOINED - 1) @ _TO_NODES
+    shares = legendre.legvander(2 * known - 1, NODES - 1) @ _TO_NODES
     mass = np.concatenate([low.mass * low.x, high.mass * high.x])
     mass = np.einsum("in,ink->kn", mass, shares) / x
     return _Blocks(low.low, high.high, width, past, x, mass)
