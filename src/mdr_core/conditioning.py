@@ -5,23 +5,15 @@ near full slip, the rounding of the load is part of their error, whatever the me
 """
 
 from collections.abc import Callable
-from typing import Final
 
 import numpy as np
 
-from mdr_core.doubles import ADJACENT, EPS, TINY
+from mdr_core.doubles import ADJACENT, EPS, ROUNDING, TINY
 from mdr_core.elementwise import full, some, where
-from mdr_core.equivalent_1d import EARLY, load_and_slope, stick_edge
+from mdr_core.equivalent_1d import NARROW, load_and_slope, stick_edge
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags
-
-# Relative distance over which the slope of a wide annulus is averaged next to a break.
-_STEP: Final = 4e-11
-# Part of full slip up to which all condition numbers are small.
-_LATE: Final = 0.9
-# Relative distance from the limiting force within which the contact slides.
-_SLIDING: Final = 1e-12
 
 
 def near_full_slip(
@@ -48,7 +40,7 @@ def near_full_slip(
     force_prescribed : True if the tangential force is prescribed, False for the displacement.
     edges : True to include c and a - c beside forces, displacements and energies.
     """
-    late = partial & (ratio > _LATE)
+    late = partial & (ratio > 1 - NARROW)
     if not some(late):
         return full(0.0, ratio)
     high, low = ends[0], np.maximum(ends[1], TINY)
@@ -75,7 +67,7 @@ def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
     partial = (limit > 0) & (size < limit)
     ratio = np.where(partial, size / np.where(limit > 0, limit, 1.0), 0.0)
     worst = np.argmax(ratio)
-    if not ratio[worst] > _LATE:
+    if not ratio[worst] > 1 - NARROW:
         return 0.0
     coordinate, part = np.broadcast_to(contact.coordinate, ratio.shape)[worst], ratio[worst]
     edge, _ = stick_edge(contact.profile, coordinate, part, 1 - part, of_force=True)
@@ -95,7 +87,7 @@ def of_sliding(
     displacement, force, limit : displacement [length], F_x and mu F_N [force] of every load step.
     dissipated : dissipated energy of every load step, evaluated only if the contact slides.
     """
-    slides = (limit > 0) & (np.abs(force) >= limit * (1 - _SLIDING))
+    slides = (limit > 0) & (np.abs(force) >= limit * (1 - ROUNDING))
     if not slides.any():
         return 0.0
     most = float(np.max(dissipated()))
@@ -109,24 +101,23 @@ def narrow_annulus(coordinate: Array, width: Array) -> Array:
     return where(slips, 3 * coordinate / where(slips, width, 1.0), 0.0)
 
 
-def of_edge_slope(contact: NormalContact, width: Array) -> Array:
+def of_edge_slope(contact: NormalContact) -> Array:
     """Return the relative error of a slip annulus by the rounding of the contact coordinate [1].
 
     The width of a narrow one is inversely proportional to g' at the edge, which changes rapidly
-    just beyond a break, and where it falls to zero. `width` is that in the contact coordinate.
+    just beyond a break, and where it falls to zero.
     """
     profile, at = contact.profile, contact.coordinate
     if not (profile.coordinate_breaks.size or profile.flattens):
-        return full(0.0, width)
+        return full(0.0, at)
     at = where(at > 0, at, np.nan)
     with np.errstate(all="ignore"):
         error = np.maximum(contact.edge_errors, ADJACENT)
-        step = np.maximum(np.minimum(where(width > 0, width / at, _STEP), _STEP), error)
         # A radius that is the coordinate itself does not move onto a break that it has not reached.
         exact = (contact.control == "contact_radius") & (at == contact.contact_radius)
-        sides = np.stack(np.broadcast_arrays((1 - step) * at, where(exact, at, (1 + step) * at)))
+        sides = np.stack(np.broadcast_arrays((1 - error) * at, where(exact, at, (1 + error) * at)))
         slopes = profile.depth_slope(sides)
-        change = np.abs(np.log(slopes[1] / slopes[0])) * (error / step)
+        change = np.abs(np.log(slopes[1] / slopes[0]))
     return where(np.isfinite(change), change, 0.0)
 
 
@@ -143,7 +134,7 @@ def of_steep_edge(profile: Profile, edge: Array, steps: tuple[Array, Array]) -> 
     beyond = np.minimum(edge * (1 + ADJACENT), profile.domain)
     for load, step in zip((profile.depth, profile.reduced_force), steps, strict=True):
         below = load(edge)
-        wide = step > EARLY / 2 * below
+        wide = step > NARROW / 2 * below
         rise = (load(beyond) - below) / where(wide, step, 1.0)
         error = np.maximum(error, where(wide, rise, 0.0))
     return error

@@ -16,17 +16,14 @@ import numpy as np
 from mdr_core.elementwise import every, full, is_number, some, where
 from mdr_core.inversion import Function, Sloped, invert
 from mdr_core.profiles import Profile
-from mdr_core.quadrature import gauss_legendre, in_order
+from mdr_core.quadrature import NODES, gauss_legendre, in_order
 from mdr_core.typing import Array
 from mdr_core.validation import require_inside
 
-# Width of an annulus, relative to a, up to which a step is an integral: for a wider one the
-# difference amplifies rounding errors at most 20-fold.
-_NARROW: Final = 0.05
-# Gauss-Legendre nodes of that integral: they integrate powers up to 100 to rounding error.
-_NODES: Final = 16
-# Fraction of the load at full slip up to which the width, not the stick edge, is the unknown.
-EARLY: Final = 0.05
+NARROW: Final = 0.05
+"""Width of an annulus, relative to a, up to which a step is an integral, and part of the load at
+full slip up to which the width is the unknown: beyond it differences amplify rounding errors at
+most 20-fold."""
 # The slope at a coordinate, given as a break and the distance from it as well.
 _Slope = Callable[[Array, Array, Array], Array]
 
@@ -115,7 +112,7 @@ def stick_edge(
         total, first = function(coordinate)
     if not is_number(ratio * total):
         coordinate, total, ratio, rest = np.broadcast_arrays(coordinate, total, ratio, rest)
-    early = ratio < EARLY
+    early = ratio < NARROW
     with np.errstate(divide="ignore", invalid="ignore"):
         late = coordinate
         if not every(early):
@@ -152,11 +149,11 @@ def _step(
     """Difference function(a) - function(c), by the integral of the slope in a narrow annulus."""
     high, width, low = ends if is_number(sum(ends)) else np.broadcast_arrays(*ends)
     below, before = break_below(profile, high)
-    limit = (high - before) / 2 if has_many_breaks(profile) else _NARROW * high
+    limit = (high - before) / 2 if has_many_breaks(profile) else NARROW * high
     if profile.steepens:
         # A steep load is not smooth over as much of the radius.
         rate = slope(high, below, high - below)
-        limit = np.minimum(limit, _NARROW * function(high) / where(rate > 0, rate, inf))
+        limit = np.minimum(limit, NARROW * function(high) / where(rate > 0, rate, inf))
     narrow = width <= limit
     if every(narrow):
         return _narrow_step(slope, high, width, below)
@@ -181,7 +178,7 @@ def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Arra
     beyond = np.maximum((high - below) - width, 0.0)
     top, bottom = np.sqrt(high - below), np.sqrt(beyond)
     inner = np.minimum(width, high - below)
-    nodes, weights = gauss_legendre(_NODES)
+    nodes, weights = gauss_legendre(NODES)
     with np.errstate(invalid="ignore"):
         half = where(inner > 0, inner / (top + bottom), 0.0) / 2
         v = bottom + np.multiply.outer(1 + nodes, half)

@@ -28,9 +28,6 @@ from mdr_core.validation import (
 )
 
 CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
-# Distance from a root of g', over the root of the rounding error, up to which its slope is that at
-# the distance: there the error of the contact radius is of second order.
-_NEAR_ROOT: Final = 0.25
 
 
 @dataclass(frozen=True, repr=False)
@@ -142,8 +139,9 @@ class NormalContact(validity.ContactResults):
         function, error = load_and_slope(profile, of_force=self.control == "normal_force"), rounding
         with np.errstate(divide="ignore", invalid="ignore"):
             if profile.flattens:
-                # Where g' falls to zero, the contact radius changes more than the load.
-                inside = self.coordinate * (1 - _NEAR_ROOT * np.sqrt(rounding))
+                # Where g' falls to zero, the contact radius changes more than the load, and by the
+                # root of its rounding error at most.
+                inside = self.coordinate * (1 - np.sqrt(rounding))
                 load, slope = function(inside)
                 condition = load / (inside * slope)
                 error = error * where(condition > 1, condition, 1.0)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, equivalent_1d, stick_zone, validity
-from mdr_core.doubles import ROUNDING
+from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.elementwise import broadcast, common_shape, is_number, some, where
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
@@ -25,7 +25,7 @@ from mdr_core.validation import extremes, only_one, require_positive, require_ty
 _STEP_ERROR: Final = 40.0
 # Relative rounding error of the load at full slip, where the normal load is prescribed: that of up
 # to three products.
-_LIMIT_ERROR: Final = 3 * 2.0**-53
+_LIMIT_ERROR: Final = 1.5 * EPS
 
 # Step of depth or force between two contact coordinates.
 _Step = Callable[[Profile, Array, Array, Array], Array]
@@ -182,7 +182,7 @@ class TangentialContact(validity.ContactResults):
     def _width_rounding(self) -> Array:
         """Relative error of a - c by the rounding of the edges [1]."""
         normal, profile = self.normal, self.normal.profile
-        error = conditioning.of_edge_slope(normal, self.width)
+        error = conditioning.of_edge_slope(normal)
         if self.control == "stick_radius":
             narrow = conditioning.narrow_annulus(self._coordinate, self.width)
             error = error + normal.edge_errors * narrow

@@ -1,33 +1,27 @@
 """Quadrature of densities that are powers of the place, near zero and far from it."""
 
 from collections.abc import Callable
-from typing import Final
 
 import numpy as np
 
 from mdr_core.elementwise import full, some, where
-from mdr_core.quadrature import gauss_legendre, in_order
+from mdr_core.quadrature import NODES, PIECE, gauss_legendre, in_order
 from mdr_core.typing import Array, Parameter
 from mdr_core.validation import extremes
-
-# Gauss-Legendre nodes of a piece.
-_NODES: Final = 16
-# Longest piece in w = arcsinh(s/scale): the integrand grows at most like exp(5 w), for which the a
-# priori bound of 16 nodes is 1e-17.
-_LONGEST: Final = 1.5
 
 
 def power_law_integral(density: Callable[[Array], Array], upper: Array, scale: Parameter) -> Array:
     """Return int_0^upper density(s) ds of a positive density that is a power of s at either end.
 
-    s = scale sinh(w) resolves it also where s is much larger than the scale.
+    s = scale sinh(w) resolves it also where s is much larger than the scale; the integrand grows at
+    most like exp(5 w).
     """
     top = np.arcsinh(upper / scale)
     if not some(top):
         return top
     # Every load has its own pieces, summed in order: its result does not depend on other loads.
-    count = where(top > _LONGEST, np.ceil(top / _LONGEST), 1.0)
-    nodes, weights = gauss_legendre(_NODES)
+    count = where(top > PIECE, np.ceil(top / PIECE), 1.0)
+    nodes, weights = gauss_legendre(NODES)
     shares = ((1 - nodes) / 2).reshape(-1, *(1,) * top.ndim)
     total = full(0.0, top)
     for piece in range(int(extremes(count)[1])):

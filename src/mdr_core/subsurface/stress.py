@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import fields
 from mdr_core.adhesion import AdhesiveContact
+from mdr_core.doubles import EPS
 from mdr_core.fields.radii import Edges, error_near, rim_error
 from mdr_core.history import ContactState
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
@@ -19,9 +20,6 @@ from mdr_core.validation import (
     require_poissons_ratio,
 )
 
-# Part of its distance from the nearest edge or break, or of the rounding error of the contact
-# radius, by which a point is moved off the surface, where the kernels are singular.
-_SURFACE: Final = 1e-18
 # Rounding error of a moment, of the largest stress, as measured with room for poles near the edge.
 _ROUNDING: Final = 3e-13
 
@@ -140,7 +138,8 @@ def on_rings(under: Foundation, place: Rings, nu: float) -> StressTensor:
         return StressTensor(*np.zeros((6, *e.shape)))
     edges = [0.0, *load.radius, *map(float, load.profile.breaks)]
     near = np.abs(np.subtract.outer(edges, r)).min(axis=0)
-    depth = np.maximum(z, _SURFACE * np.maximum(near, np.spacing(load.radius[-1])))
+    # On the surface the kernels are singular.
+    depth = np.maximum(z, EPS * np.maximum(near, np.spacing(load.radius[-1])))
     moments = under.moments(r, depth)
     infinite = (z == 0) & np.isin(r, under.infinite_radii)
     origin = (z == 0) & (r == 0) & ~infinite
