@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.doubles import EPS, LARGEST
+from mdr_core.doubles import EPS, LARGEST, ROUNDING, TINY
 from mdr_core.elementwise import every, some, where
 from mdr_core.errors import DefectError
 from mdr_core.typing import Array
@@ -19,19 +19,10 @@ Sloped = Callable[[Array], tuple[Array, Array]]
 _MAX_STEPS: Final = 200
 # Newton's steps without bisections between them.
 _ALONE: Final = 20
-# Newton's step after which one more follows: the slope may be that of the other side of a
-# discontinuity, at which convergence is not quadratic.
+# Newton's step, and distance from the target, in log, after which one more step follows. The slope
+# may be that of the other side of a discontinuity, at which convergence is not quadratic, and just
+# above one a step is short long before the target is close.
 _LAST_BUT_ONE: Final = 1e-10
-# Step that is rounding error itself, as it has to be where no slope is known: residual steps
-# converge linearly.
-_SMALLEST_STEP: Final = 1e-14
-# Distance from the target, in log, below which the step has converged on a steep rise as well:
-# just above a slope discontinuity it is short long before.
-_CLOSE: Final = 1e-8
-# Factor by which an open bracket grows.
-_STRIDE: Final = 16.0
-# Largest step in log.
-_MAX_LOG_STEP: Final = 30.0
 
 
 def invert(
@@ -78,15 +69,14 @@ def invert(
             known = (slope > 0) & (slope < inf)
             step, longest = residual / slope, _LAST_BUT_ONE
             if not every(known):
-                # Where the slope is not finite, the residual gives the direction alone.
+                # Where the slope is not finite, the residual gives the direction alone, and
+                # converges linearly.
                 step = where(known, step, residual)
-                longest = where(known, _LAST_BUT_ONE, _SMALLEST_STEP)
+                longest = where(known, _LAST_BUT_ONE, ROUNDING)
             size = abs(step)
             # A short step alone may only mean that the function is steep here.
-            short = (abs(residual) <= _CLOSE) & (size <= longest)
-            converged = short & known & (size <= _SMALLEST_STEP)
-            if not every(size < _MAX_LOG_STEP):
-                step = where(size < _MAX_LOG_STEP, step, np.sign(step) * _MAX_LOG_STEP)
+            short = (abs(residual) <= _LAST_BUT_ONE) & (size <= longest)
+            converged = short & known & (size <= ROUNDING)
             proposed = s * np.exp(step)
             if every(done | converged):
                 s, done = where(done, s, proposed), done | converged
@@ -115,6 +105,5 @@ def invert(
 
 
 def _middle(low: Array, high: Array) -> Array:
-    """Geometric middle of the bracket, or a stride where it is still open."""
-    middle = np.sqrt(low) * np.sqrt(high)
-    return where(low == 0, high / _STRIDE, where(np.isinf(high), low * _STRIDE, middle))
+    """Geometric middle of the bracket, within the range of doubles where it is open."""
+    return np.sqrt(np.maximum(low, TINY)) * np.sqrt(np.minimum(high, 1 / TINY))
