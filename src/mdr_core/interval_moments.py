@@ -28,13 +28,10 @@ from mdr_core.typing import Array, Flags, Indices
 # Gauss nodes on an interval without a break, see notes, §10.
 _POINTS: Final = 16
 # An interval is wide if the normal coordinate grows on it by more than the first factor, or the
-# contact coordinate, or the distance from a pole of the slope, by more than the second, beyond a
-# break by the third. Differences of closed forms over a wide interval hardly suffer cancellation.
+# contact radius, or the distance from a pole of the slope, by more than the second, beyond a break
+# the radius by the third. Differences of closed forms over a wide interval hardly suffer
+# cancellation.
 _WIDE_IN_NORMAL, _WIDE, _WIDE_BEYOND_BREAK = 16.0, 3.0, 1.3
-# The same between two breaks of a table, where the slope is a polynomial, and may nearly vanish.
-_WIDE_IN_TABLE: Final = 2.5
-# Below this multiple of the flat's radius the contact radius hardly changes: differences cancel.
-_SHALLOW: Final = 1.5
 
 
 class Moments(NamedTuple):
@@ -168,12 +165,11 @@ class IntervalMoments:
         """Return the moments over intervals without a break. Parameters: `over`, `over_narrow`."""
         profile, weights, long = self.profile, np.zeros((3, low.size)), span > 0
         start, stop = profile.pole - ends
-        wide = (start > _WIDE * stop) | (low + span > _WIDE_IN_NORMAL * low)
-        beyond = _WIDE_IN_TABLE if has_many_breaks(profile) else _WIDE_BEYOND_BREAK
-        limit = np.where(base > 0, beyond, _WIDE)
-        wide = (ends[1] > limit * ends[0]) | (wide & (base == 0))
-        if some(profile.first_radius > 0):
-            wide &= profile.contact_radius(ends[1]) > _SHALLOW * profile.first_radius
+        grows = (start > _WIDE * stop) | (low + span > _WIDE_IN_NORMAL * low)
+        # Next to a flat the contact radius hardly changes while the normal coordinate grows.
+        grows &= (base == 0) & (profile.first_radius == 0)
+        radius = profile.contact_radius(ends)
+        wide = grows | (radius[1] > np.where(base > 0, _WIDE_BEYOND_BREAK, _WIDE) * radius[0])
         closed, by_rule = wide & long, ~wide & long
         if some(closed):
             weights[:, closed] = self._part(closed).over_wide(span[closed], ends[:, closed])
