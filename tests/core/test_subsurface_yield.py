@@ -237,7 +237,7 @@ def test_peak_across_the_load_after_a_load_history() -> None:
 
 
 def test_cusp_at_the_edge_of_a_sliding_contact() -> None:
-    """The spline through the grid has its peak beside the edge, where the stress is lower."""
+    """A smooth curve through the grid has its peak beside the edge, where the stress is lower."""
     contact = normal.solve(RoundedPunch(0.3484, 1.0), 1.0, contact_radius=0.6809)
     case = tangential.solve(contact, 1.0, 0.4337, stick_radius=0.0)
     at_edge = stress(case, 0.6809, 0.0, 0.0, poissons_ratio=0.2156).maximum_shear

@@ -20,8 +20,8 @@ from mdr_core.validation import (
     require_poissons_ratio,
 )
 
-# Rounding error of a moment, of the largest stress, as measured with room for poles near the edge.
-_ROUNDING: Final = 3e-13
+MOMENT_ERROR: Final = 3e-13
+"""Error of a moment, of the largest stress, as measured with room for poles near the edge."""
 
 # Radii and depths [length], shape (m,), and directions e^(i phi), shape (..., m).
 Rings: TypeAlias = tuple[Array, Array, Numbers]
@@ -187,9 +187,9 @@ def error_estimate(contact: Contact, x: ArrayLike, y: ArrayLike, z: ArrayLike) -
     known, near = fields.edges(contact), 0.0
     if isinstance(contact, AdhesiveContact):
         away = np.hypot(np.subtract.outer(r, known.radius), z[:, None])
-        return _ROUNDING + rim_error(known, away) + 4 * contact.error_estimate
+        return MOMENT_ERROR + rim_error(known, away) + 4 * contact.error_estimate
     for i, at in enumerate(known.radius):
         edge = Edges(*(part[i : i + 1] for part in known))
         near = max(near, error_near(edge, at + np.hypot(r - at, z), root=True))
     own = 0.0 if isinstance(contact, ContactState) else 4 * contact.error_estimate
-    return _ROUNDING + own + near
+    return MOMENT_ERROR + own + near

@@ -9,7 +9,6 @@ from math import ceil, cos, exp, inf, log, sin
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter
 
 from mdr_core import normal, tangential
@@ -19,30 +18,28 @@ from mdr_core.fields import graded
 from mdr_core.history import LoadHistory
 from mdr_core.profiles import Cone, Paraboloid, Power, Profile
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
-from mdr_core.subsurface.stress import on_rings
+from mdr_core.subsurface.stress import MOMENT_ERROR, on_rings
 from mdr_core.typing import Array, Indices
 from mdr_core.validation import require_poissons_ratio, require_single_positive, require_type
 from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 
 # Radii, and depths per e-fold, of a grid. The radii cluster at the axis, the edges and the breaks;
 # the depths lie between these parts of the contact radius.
-_RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 2, 1e-4, 2.0
-# Points of the spline through the grid over those of the grid; part of the highest stress that its
-# peaks reach if they are climbed.
-_FINER, _ALMOST = 4, 0.8
+_RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 3, 1e-4, 2.0
 # Directions of the grid if there is friction: it may lift a peak out of the plane y = 0.
 _ANGLES: Final = np.linspace(0, np.pi / 2, 4)
-# Points across a box around a peak, and half of the first box in steps of the spline.
-_ACROSS, _STEPS = np.linspace(-1, 1, 5), 3.0
-# Factor by which a box shrinks; parts of the stress by which it varies in the last box, and by
-# rounding; rounds.
-_SHRINK, _FLAT, _ROUNDING, _ROUNDS = 0.3, 4e-6, 1e-11, 100
+# Points across a box around a peak, which at first reaches to the next points of the grid.
+_ACROSS: Final = np.linspace(-1, 1, 5)
+# Factor by which a box shrinks, and rounds.
+_SHRINK, _ROUNDS = 0.3, 100
+# Part of the stress by which it varies in the last box, and distance from a singular force.
+_RTOL: Final = 1e-6
 # Contact coordinate over the radius of a flat below which no radius in double precision resolves
 # the stress beneath the edge: at this one it is too low by 5e-6 of its value.
 _RESOLVED: Final = 5e-13
-# Logarithms of the force at the onset: distance from a singular one, step of the secant after which
-# the next is negligible, and range.
-_XTOL, _AGREED, _REACH = 1e-6, 3e-4, 60.0
+# Logarithms of the force at the onset: step of the secant after which the next is negligible, and
+# range.
+_AGREED, _REACH = 3e-4, 60.0
 
 MEASURES: Final = ("von_mises", "maximum_shear")
 
@@ -225,12 +222,12 @@ def _onset(
     last = inf if one.largest_loads is None else one.largest_loads[1]
     # Nearer the edge of a flat the stress beneath it no longer depends on the load.
     least = e_star * float(one.reduced_force(number(_RESOLVED * one.first_radius)))
-    lowest = low = max(log(force) - _REACH, log(least) + _XTOL if least > 0 else -inf)
-    highest = high = min(log(force) + _REACH, log(min(singular, e_star * last)) - _XTOL)
+    lowest = low = max(log(force) - _REACH, log(least) + _RTOL if least > 0 else -inf)
+    highest = high = min(log(force) + _REACH, log(min(singular, e_star * last)) - _RTOL)
     load = max(min(log(force), highest), lowest)
     # The first step takes the stress to grow like the mean pressure, which is exact for powers.
-    means = [at(each).normal.mean_pressure for each in (load, load - _XTOL)]
-    before, excess, slope = load, 0.0, log(means[0] / means[1]) / _XTOL
+    means = [at(each).normal.mean_pressure for each in (load, load - _RTOL)]
+    before, excess, slope = load, 0.0, log(means[0] / means[1]) / _RTOL
     while True:
         value = _peak(foundations(at(load), body)[0][0], measure, nu)[0]
         found = min(max(log(value / limit), -_REACH), _REACH)
@@ -299,25 +296,15 @@ def _peak(
     values = on(angles[:, None, None], r[:, None], z)
     if limit is not None and values.max() >= limit:
         return (float(values.max()),)
-    # Where two peaks share a ridge the grid may have one maximum, but the spline through it has
-    # both.
-    steps = [np.arange(part.size) for part in (r, z)]
-    finer = [np.linspace(0, part[-1], _FINER * part[-1] + 1) for part in steps]
-    fine = CubicSpline(steps[0], values, axis=1)(finer[0])
-    fine = CubicSpline(steps[1], fine, axis=2)(finer[1])
-    r, z = (np.interp(*columns) for columns in zip(finer, steps, (r, z), strict=True))
     # On the axis the directions differ by rounding errors.
-    fine[1:, r == 0] = fine[0, r == 0]
-    high = (fine == maximum_filter(fine, 3)) & (fine >= _ALMOST * values.max())
+    values[1:, r == 0] = values[0, r == 0]
+    high = values == maximum_filter(values, 3)
     # One direction stands for all on the axis, and for both beside the plane of the load.
     high[1:, r == 0] = high[len(_ANGLES) - 1 :, r < 0] = False
-    # The spline waves beside the cusp at the edge of a sliding contact, and may hide it.
-    at = np.unravel_index(values.argmax(), values.shape)
-    high[at[0], _FINER * at[1], _FINER * at[2]] = True
     k, i, j = np.nonzero(high)
     place = np.stack([angles[k], r[i], z[j]], axis=1)
-    turn = np.full(k.size, _ANGLES[1] / _FINER * under.sheared)
-    box = _STEPS * np.stack([turn, np.gradient(r)[i], np.gradient(z)[j]], axis=1)
+    turn = np.full(k.size, _ANGLES[1] * under.sheared)
+    box = np.stack([turn, np.gradient(r)[i], np.gradient(z)[j]], axis=1)
     value, (angle, radius, depth) = _climbed(on, place, box, limit)
     return value, radius * cos(angle), abs(radius * sin(angle)), depth
 
@@ -346,14 +333,14 @@ def _climbed(
         values = values.swapaxes(0, 1).reshape(len(place), -1)
         rows = np.arange(len(place))
         spot, middle = values.argmax(axis=1), values.shape[1] // 2
-        spot[values[rows, spot] <= values[:, middle] * (1 + _ROUNDING)] = middle
+        spot[values[rows, spot] <= values[:, middle] * (1 + MOMENT_ERROR)] = middle
         index = np.stack(np.unravel_index(spot, (_ACROSS.size,) * 3), axis=1)
         place, value = axes[rows[:, None], range(3), index], values[rows, spot]
         if value.max() > highest:
             highest, top = float(value.max()), place[value.argmax()]
         rise, reach = value - values.min(axis=1), np.abs(_ACROSS[index])
         needed = value + rise > max(highest, limit or 0.0)
-        left = (rise > _FLAT * value) & (needed | (reach == 1).any(axis=1))
+        left = (rise > _RTOL * value) & (needed | (reach == 1).any(axis=1))
         if not left.any() or (limit is not None and highest >= limit):
             break
         half = half * np.where(reach == 1, 1 / _SHRINK, np.where(reach == 0, _SHRINK, 1.0))
