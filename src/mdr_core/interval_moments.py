@@ -169,7 +169,9 @@ class IntervalMoments:
         # Next to a flat the contact radius hardly changes while the normal coordinate grows.
         grows &= (base == 0) & (profile.first_radius == 0)
         radius = profile.contact_radius(ends)
-        wide = grows | (radius[1] > np.where(base > 0, _WIDE_BEYOND_BREAK, _WIDE) * radius[0])
+        # On the pieces of a table the slope is a polynomial.
+        beyond = _WIDE if has_many_breaks(profile) else _WIDE_BEYOND_BREAK
+        wide = grows | (radius[1] > np.where(base > 0, beyond, _WIDE) * radius[0])
         closed, by_rule = wide & long, ~wide & long
         if some(closed):
             weights[:, closed] = self._part(closed).over_wide(span[closed], ends[:, closed])
