@@ -20,6 +20,10 @@ from mdr_core.typing import Array, Flags
 
 # Largest degree of the slope: the error of 20 points of a sphere is a tenth of that of a cubic.
 _DEGREE: Final = 5
+# Derivative of the slope whose mean square is the roughness: that of a parabola is zero.
+_ROUGH: Final = 3
+# Largest number of points that are knots.
+_KNOTS: Final = 120
 # Points of a piece at which the sign of an interpolant is tested.
 _TESTED: Final = 8
 
@@ -72,8 +76,14 @@ class TableBasis:
     first spline, which is the slope on the axis.
     """
 
-    def __init__(self, points: TablePoints, knots: Array) -> None:
+    def __init__(self, points: TablePoints) -> None:
         self.degree = k = min(max(points.x.size - 2 - 2 * len(points.breaks), 2), _DEGREE)
+        self.order = min(_ROUGH, k)
+        x = points.x if points.x[0] == 0 else np.append(0.0, points.x)
+        knots = x[np.unique(np.linspace(0, x.size - 1, min(x.size, _KNOTS)).round().astype(int))]
+        if knots.size > _DEGREE:
+            # Points beside which there is no knot, not the roughness, bend the slope at the end.
+            knots = np.delete(knots, [-3, -5])
         self.points, self.knots = points, knots
         self.t = np.concatenate([[0.0] * k, knots, [1.0] * k])
         self.size = self.t.size - k - 1
@@ -101,46 +111,39 @@ class TableBasis:
         rest = np.zeros((len(splines), self.heights.shape[1] - self.size))
         return np.hstack([splines[:, 1:], rest, splines[:, :1]])
 
-    def _differences(self, order: int) -> Array:
-        """Coefficients of a derivative of the splines."""
-        k, t, rows = self.degree, self.t, np.eye(self.size)
-        for o in range(1, order + 1):
-            span = t[k + 1 : k + 1 + self.size - o] - t[o : self.size]
-            rows = np.diff(rows, axis=0) * ((k - o + 1) / span)[:, None]
-        return rows
+    def _derivative(self) -> Array:
+        """Coefficients of the rough derivative, weighted by the root of the support of its splines.
 
-    def derivative(self, order: int, *, met: bool) -> Array:
-        """Coefficients of a derivative, weighted by the root of the support of its splines.
-
-        If heights are `met`, weighted as differences: by that power of the spacing around.
+        Over the splines alone.
         """
-        return self.padded(self._weighted(order, met=met))
+        k, t, rows, span = self.degree, self.t, np.eye(self.size), np.empty(0)
+        for o in range(1, self.order + 1):
+            span = (t[k + 1 : k + 1 + self.size - o] - t[o : self.size]) / (k - o + 1)
+            rows = np.diff(rows, axis=0) / span[:, None]
+        return rows * np.sqrt(span)[:, None]
 
-    def _weighted(self, order: int, *, met: bool) -> Array:
-        beside = int(met)
-        inner, count = self.t[order - beside :], self.degree - order + 1 + 2 * beside
-        support = (inner[count : count + self.size - order] - inner[: self.size - order]) / count
-        return self._differences(order) * support[:, None] ** (order if met else 0.5)
+    @property
+    def roughness(self) -> Array:
+        """Rows of which the sum of squares is the roughness."""
+        return self.padded(self._derivative())
 
-    def by_roughness(self, order: int, *, met: bool, sharp: bool) -> tuple[Array, Array]:
-        """Coefficients (columns, n) of what has no derivative of this order, and of the others.
+    def by_roughness(self, *, sharp: bool) -> tuple[Array, Array]:
+        """Coefficients (columns, n) of what has no roughness, and of the others.
 
-        Each of the others has one coefficient of the weighted derivative that is 1.
+        Each of the others has one row of the roughness that is 1.
 
         Parameters
         ----------
-        order : of the derivative of the slope that is the roughness.
-        met : heights are met, which weights the derivative by the spacing of the knots.
         sharp : the slope may be positive at the axis.
         """
         matrix = BSpline.design_matrix(self.places, self.t, self.degree)
-        powers = np.arange(0 if sharp else 1, order)
+        powers = np.arange(0 if sharp else 1, self.order)
         smooth = self.padded(
             spsolve(matrix.tocsc(), self.places[:, None] ** powers).reshape(self.size, -1).T
         )
         explicit = np.eye(self.heights.shape[1])[self.size - 1 : -1]
-        triangle = np.vstack([np.eye(order, self.size), self._weighted(order, met=met)])
-        rough = solve_triangular(triangle, np.eye(self.size)[:, order:], lower=True)
+        triangle = np.vstack([np.eye(self.order, self.size), self._derivative()])
+        rough = solve_triangular(triangle, np.eye(self.size)[:, self.order :], lower=True)
         return np.vstack([smooth, explicit]).T, self.padded(rough.T).T
 
     def spline(self, coefficients: Array) -> BSpline:

@@ -21,35 +21,21 @@ from mdr_core.profiles.table_basis import TableBasis, TableFit, root_mean_square
 from mdr_core.profiles.table_points import ROUNDED, TablePoints, cleaned, off_axis, scatter
 from mdr_core.typing import Array
 
-# Derivative of the slope whose mean square is the roughness: of measured heights, for which a
-# parabola has none, and of heights that are met.
-_ROUGH, _ROUGH_OF_EXACT = 3, 5
-# Largest number of knots by that derivative, and weights of the roughness that are tried, over the
-# one that halves the smoothest bend.
-_KNOTS: Final = {_ROUGH: 80, _ROUGH_OF_EXACT: 200}
-_WEIGHTS: Final = {
-    _ROUGH: 10.0 ** np.arange(-14, 6.1, 0.25),
-    _ROUGH_OF_EXACT: 10.0 ** np.arange(-30, -7.9, 0.25),
-}
+# Weights of the roughness that are tried, over the one that halves the smoothest bend.
+_WEIGHTS: Final = 10.0 ** np.arange(-20, 6.1, 0.5)
 # Number of radii up to which cross-validation has too few points to tell noise.
 _FEW: Final = 12
 # Weight of a degree of freedom in cross-validation, against overfitting. Source: kim-gu.
 _GCV: Final = 1.2
-# Relative difference of the scores of cross-validation that is none.
-_EQUAL_SCORES: Final = 1e-6
 # Increase of the score, times the number of points, up to which a weight is plausible: of a
 # likelihood by a factor of e.
 _PLAUSIBLE: Final = 2.0
-# Part of the largest misfit below which few points leave a slope without roughness open.
-_OPEN: Final = 1e-8
-# Factor by which a sharp tip has to lower the roughness of heights that are met, and variances of
-# the noise by which it has to lower the sum of squares, to be believed.
+# Factor by which a sharp tip has to lower the sum of squares that a slope without roughness leaves
+# of heights that are met, and variances of the noise by which it has to lower that of others.
 _SHARPER, _SHARPER_MEASURED = 100.0, 12.0
 # Lowest g'/x, over that of the paraboloid through the last point: g increases strictly.
 _FLOOR: Final = 1e-9
-# Lowest g'/x where heights are met.
-_TINY: Final = 1e-15
-# Rounding error of heights over their range.
+# Rounding error of heights over their range, and of a flat that is met.
 _EXACT: Final = 1e-15
 # Deviation from the points, root mean square over the height, from which the shape has no contact
 # area that is a single disc.
@@ -76,8 +62,7 @@ def fit_table(
     points = cleaned(r, f, breaks)
     if uncertainty is None and (points.x.size <= _FEW or scatter(points) < ROUNDED):
         uncertainty = 0.0
-    order = _ROUGH_OF_EXACT if uncertainty == 0 else _ROUGH
-    found = _nearest(points, uncertainty and uncertainty / points.scale[1], order)
+    found = _nearest(points, uncertainty and uncertainty / points.scale[1])
     if found.rms > _NO_DISC * points.scale[1]:
         largest, radius = found.largest
         advice = off_axis(r, f)
@@ -91,27 +76,18 @@ def fit_table(
     return found
 
 
-def _knots(points: TablePoints, most: int) -> Array:
-    """Return knots at the axis and at points, every n-th one if there are more than `most`."""
-    x = points.x if points.x[0] == 0 else np.append(0.0, points.x)
-    if x.size > most:
-        x = x[np.unique(np.linspace(0, x.size - 1, most).round().astype(int))]
-    return x
-
-
-def _nearest(points: TablePoints, uncertainty: float | None, order: int) -> TableFit:
+def _nearest(points: TablePoints, uncertainty: float | None) -> TableFit:
     """Return the smoothest admissible fit within the uncertainty, or the scatter.
 
     Parameters
     ----------
     uncertainty : of the heights over their range; 0 to meet them, None to estimate it.
-    order : of the derivative of the slope whose mean square is the roughness.
     """
-    basis = TableBasis(points, _knots(points, _KNOTS[order]))
-    chosen = _Spectrum(basis, uncertainty, order, sharp=False)
+    basis = TableBasis(points)
+    chosen = _Spectrum(basis, uncertainty, sharp=False)
     # A tip that lowers rounding errors is none.
-    if chosen.score > (10 * _EXACT if uncertainty == 0 else ROUNDED) ** 2:
-        sharp = _Spectrum(basis, uncertainty, order, sharp=True)
+    if chosen.score > ROUNDED**2:
+        sharp = _Spectrum(basis, uncertainty, sharp=True)
         factor = _SHARPER if uncertainty == 0 else 1 + _SHARPER_MEASURED / points.x.size
         if sharp.score * factor < chosen.score:
             chosen = sharp
@@ -120,17 +96,15 @@ def _nearest(points: TablePoints, uncertainty: float | None, order: int) -> Tabl
     spread = _SPREAD * chosen.sigma * chosen.spread
     splines, jumps = coefficients[: basis.size - 1], coefficients[basis.size - 1 : -2 : 2]
     floor = _FLOOR
-    if order > _ROUGH:
+    if uncertainty == 0:
         # A flat that is met is flat up to rounding errors, and what is smooth has no jumps.
         flat = np.abs(splines) < _FLOOR
-        splines[flat] = (_TINY * basis.places[1:])[flat]
+        splines[flat] = (_EXACT * basis.places[1:])[flat]
         jumps[np.abs(jumps) < _FLOOR] = floor = 0.0
         coefficients[-1] *= abs(coefficients[-1]) > ROUNDED
     # Where the slope falls by a step, g' is infinite and negative beyond it.
     falls = min(jumps.min(initial=0.0), coefficients[-1]) < 0
     if falls or basis.slopes(coefficients).min() <= floor:
-        if order > _ROUGH:
-            return _nearest(points, uncertainty, _ROUGH)
         coefficients = _not_negative(basis, chosen)
         scatter = root_mean_square(points.weight * basis.deviation(coefficients))
         spread = spread * max(scatter / chosen.sigma, 1.0)
@@ -203,17 +177,13 @@ class _Spectrum:
     Source: elden.
     """
 
-    def __init__(
-        self, basis: TableBasis, uncertainty: float | None, order: int, *, sharp: bool
-    ) -> None:
-        points = basis.points
-        self.sharp, tried, met = sharp, _WEIGHTS[order], order > _ROUGH
-        order = min(order, basis.degree)
+    def __init__(self, basis: TableBasis, uncertainty: float | None, *, sharp: bool) -> None:
+        points, self.sharp = basis.points, sharp
         matrix, goal = basis.heights * points.weight[:, None], points.y * points.weight
-        smooth, rough = basis.by_roughness(order, met=met, sharp=sharp)
+        smooth, rough = basis.by_roughness(sharp=sharp)
         seen, size, right = np.linalg.svd(matrix @ smooth, full_matrices=False)
         # Few points leave directions without misfit and roughness.
-        known = size > _OPEN * size[0]
+        known = size > ROUNDED * size[0]
         seen, smooth = seen[:, known], smooth @ (right[known].T / size[known])
         bent = matrix @ rough
         shared = seen.T @ bent
@@ -228,7 +198,7 @@ class _Spectrum:
         part[: size.size] = left.T @ (base.T @ goal)
         rest = float(np.square(goal - base @ (base.T @ goal)).sum())
         # Where few points leave all bends open, there is no smoothest one.
-        weights = max(size2[0], _OPEN**2 * float(np.square(bent).sum())) * tried
+        weights = max(size2[0], ROUNDED**2 * float(np.square(bent).sum())) * _WEIGHTS
         left_out = weights[:, None] / np.add.outer(weights, size2)
         misfit = np.square(left_out * part).sum(axis=1) + rest
         freedom = fitted.size + (1 - left_out).sum(axis=1)
@@ -236,8 +206,7 @@ class _Spectrum:
         left_over = count - _GCV * freedom
         with np.errstate(divide="ignore", invalid="ignore"):
             score = np.where(left_over > 0, count * misfit / np.square(left_over), np.inf)
-        # Of weights that do not matter the one that leaves most open.
-        at = best = int(np.argmax(score <= score.min() * (1 + _EQUAL_SCORES)))
+        at = best = int(np.argmin(score))
         if uncertainty is not None:
             allowed = np.maximum(count - freedom, 1.0) * max(uncertainty, _EXACT) ** 2
             within = np.append(0, np.flatnonzero(misfit <= allowed))
@@ -245,12 +214,12 @@ class _Spectrum:
         whole = left_out @ np.square(part) + rest
         # Few points that are met leave cross-validation nothing to judge a tip by.
         self.score = float(whole[-1] if uncertainty == 0 else score.min())
-        self.rough = np.sqrt(weights[at]) * basis.derivative(order, met=met)
+        self.rough = np.sqrt(weights[at]) * basis.roughness
         """Rows of the roughness."""
         likely = best if uncertainty == 0 else at
         # Of noise and roughness together. Source: wahba.
         scatter = float(np.sqrt(whole[likely] / max(count - fitted.size, 1)))
-        self.sigma = max(uncertainty or scatter, 1e-16)
+        self.sigma = max(uncertainty or scatter, _EXACT)
         # The points hardly tell the best weight from a smaller one, which leaves more open.
         plausible = min(likely, int(np.argmax(score <= score.min() * (1 + _PLAUSIBLE / count))))
         self.spread = np.hstack([smooth, rough / np.sqrt(size2 + weights[plausible])])

@@ -40,8 +40,6 @@ class TablePoints:
     weight: Array
     """Weight of the deviation: square root of the number of points that were merged."""
     breaks: tuple[float, ...]
-    rounded: bool
-    """True if radii or heights show that they are rounded; the weights are those of that error."""
     scale: tuple[float, float]
     """Last radius and height [length]."""
 
@@ -65,15 +63,14 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
         raise InputError(("profile", "f"), f"the heights fall away from the axis: {advice}")
     weight = np.sqrt(count)
     of_radius, of_height = _rounding(given[0], given[1], x.size) if x.size > 2 else (0.0, 0.0)
-    rounded = max(of_radius, of_height) > ROUNDED
-    if rounded:
+    if max(of_radius, of_height) > ROUNDED:
         # An error of the radius is one of the height on a slope.
         error = np.hypot(of_radius * np.gradient(y, x), of_height)
         # On a flat an error of the radius is none of the height.
         typical = float(np.median(error[error > 0]))
         weight = weight * typical / np.maximum(error, _LEAST_ERROR * typical)
     scaled = tuple(b / end for b in breaks)
-    return TablePoints(x, y, weight, scaled, rounded, (end, height))
+    return TablePoints(x, y, weight, scaled, (end, height))
 
 
 def off_axis(r: Array, f: Array) -> str:
