@@ -78,16 +78,16 @@ def largest_stress(
     if not some(unknown):
         return result
     if is_number(edge):
-        return _largest(profile, edge, *(slip or ()))
+        return _search(profile, *map(np.atleast_1d, (edge, *(slip or ()))))[0]
     finite, result = np.atleast_1d(unknown), np.atleast_1d(result)
     parts = [np.broadcast_to(part, finite.shape) for part in (edge, *(slip or ()))]
     if not profile.swept:
-        result[finite] = _largest(profile, *(part[finite] for part in parts))
+        result[finite] = _search(profile, *(part[finite] for part in parts))
         return result.reshape(shape)
     named = {name: np.broadcast_to(value, shape) for name, value in profile.parameters.items()}
     for place in zip(*np.nonzero(finite), strict=True):
         one = profile.with_parameters({name: float(value[place]) for name, value in named.items()})
-        result[place] = _largest(one, *(part[place][None] for part in parts))[0]
+        result[place] = _search(one, *(part[place][None] for part in parts))[0]
     return result
 
 
@@ -99,22 +99,14 @@ def largest_less_tension(profile: Profile, edge: Array, loaded: Flags, rim: Arra
     profile, edge, loaded : see `largest_stress`.
     rim : tension at the axis, where it is smallest [1].
     """
-    whole = np.atleast_1d(largest_stress(profile, edge, loaded))
-    ends, found = np.atleast_1d(edge), np.atleast_1d(loaded) & np.isfinite(whole)
-    found &= ~np.atleast_1d(profile.falls_from_axis(ends))
+    ends, falls = np.atleast_1d(edge), np.atleast_1d(profile.falls_from_axis(edge))
+    whole = np.atleast_1d(largest_stress(profile, ends, loaded & ~falls))
+    if falls.any():
+        whole[falls] = profile.axis_stress(ends[falls])
+    found = ~falls & np.atleast_1d(loaded) & np.isfinite(whole)
     if found.any():
         whole[found] = _search(profile, ends[found], rim=np.atleast_1d(rim)[found])
     return whole.reshape(np.shape(edge))[()] - rim
-
-
-def _largest(profile: Profile, edge: Array, *slip: Array) -> Array:
-    """The largest stress of contacts with one profile, where it is finite; shape of `edge`."""
-    if not slip:
-        at_axis, result = np.atleast_1d(profile.falls_from_axis(edge)), np.atleast_1d(edge) + 0.0
-        result[at_axis] = profile.axis_stress(result[at_axis])
-        result[~at_axis] = _search(profile, result[~at_axis])
-        return result.reshape(edge.shape)[()]
-    return _search(profile, *map(np.atleast_1d, (edge, *slip))).reshape(edge.shape)[()]
 
 
 def _on_curve(profile: RoundedPunch, edge: Array) -> Array:

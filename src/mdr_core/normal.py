@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import validity
 from mdr_core.doubles import ADJACENT, LARGEST, ROUNDING
-from mdr_core.elementwise import broadcast, common_shape, where
+from mdr_core.elementwise import broadcast, common_shape, every, some, where
 from mdr_core.equivalent_1d import coordinate_from_radius, load_and_slope
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import largest_stress
@@ -86,7 +86,14 @@ class NormalContact(validity.ContactResults):
 
         Infinite at a sharp tip, at a slope discontinuity and at the edge of a flat punch.
         """
-        return self.e_star * largest_stress(self.profile, self.coordinate, self.loaded)
+        profile, edge, loaded = self.profile, self.coordinate, self.loaded
+        falls = profile.falls_from_axis(edge)
+        if not some(falls):
+            return self.e_star * largest_stress(profile, edge, loaded)
+        stress = where(loaded, profile.axis_stress(edge), 0.0)
+        if not every(falls):
+            stress = where(falls, stress, largest_stress(profile, edge, loaded & ~falls))
+        return self.e_star * stress
 
     @property
     def loaded(self) -> Flags:

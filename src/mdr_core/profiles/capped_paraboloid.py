@@ -67,7 +67,7 @@ class CappedParaboloid(Tipped):
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         """True on the cap, which is a paraboloid. See `Profile`."""
-        return coordinate <= self.flank_start
+        return coordinate < self.flank_start
 
     def f(self, radius: Array) -> Array:
         square, b2 = radius * radius, np.square(self.cap_radius)

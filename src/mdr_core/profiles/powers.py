@@ -217,6 +217,9 @@ class Paraboloid(Profile):
         gap = atan_gap(a, np.where(root > 0, root, 1.0))
         return (a * a * np.arctan2(a, root) + root * gap) / (pi * self.radius)
 
+    def falls_from_axis(self, coordinate: Array) -> Flags:
+        return coordinate >= 0
+
     def axis_stress(self, coordinate: Array) -> Array:
         return self.dg(coordinate) / pi
 

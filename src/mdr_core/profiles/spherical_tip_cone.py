@@ -83,6 +83,5 @@ class SphericalTipCone(TippedCone):
         return sphere + self.slope * (x * x * np.arctan(s / b) + b * s)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
-        if self.slope <= _SHALLOW:
-            return coordinate >= 0
-        return (coordinate <= self.flank_start) & self._tip.falls_from_axis(coordinate)
+        on_tip = (coordinate <= self.flank_start) & self._tip.falls_from_axis(coordinate)
+        return on_tip | (np.less_equal(self.slope, _SHALLOW) & (coordinate >= 0))
