@@ -6,14 +6,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Final
 
-from mdr_sweep.spec import QUANTITIES, SweepError, UsageError
+from mdr_sweep.spec import QUANTITIES, ExitStatus, SweepError, UsageError
 
-# Exit status of a sweep that cannot continue.
-_FAILED: Final = 1
-# As argparse reports invalid arguments.
-_INVALID_INPUT: Final = 2
-# As shells report programs terminated by SIGINT.
-_INTERRUPTED: Final = 130
 _RESUME: Final = "completed chunks are kept; rerun the command to resume"
 
 
@@ -55,14 +49,14 @@ def run(arguments: argparse.Namespace) -> int:
         status: int = import_module("mdr_sweep.sweep").run(arguments)
     except ModuleNotFoundError as error:
         remedy = "run `pip install '.[sweep]'` in the checkout"
-        return _exit(f"{error.name} is missing; {remedy}", _FAILED)
+        return _exit(f"{error.name} is missing; {remedy}", ExitStatus.ENDED_EARLY)
     except UsageError as error:
-        return _exit(error, _INVALID_INPUT)
+        return _exit(error, ExitStatus.INVALID_INPUT)
     except (KeyboardInterrupt, Exception) as error:
         if _is_interrupt(error):
-            return _exit(f"interrupted; {_RESUME}", _INTERRUPTED)
+            return _exit(f"interrupted; {_RESUME}", ExitStatus.INTERRUPTED)
         if isinstance(error, SweepError | OSError):
-            return _exit(f"{error}; {_RESUME}", _FAILED)
+            return _exit(f"{error}; {_RESUME}", ExitStatus.ENDED_EARLY)
         raise
     return status
 

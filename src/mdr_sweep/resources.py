@@ -14,11 +14,8 @@ from mdr_sweep.spec import Spec
 
 # Time of the last sample, long against the overhead of a call [s].
 _SAMPLE_SECONDS: Final = 0.1
-# Cases of the first sample, few enough for the slowest query.
-_FIRST_SAMPLE: Final = 16
-# Time of a chunk [s]: a lost worker loses little, and transfer takes a small part.
-_CHUNK_SECONDS: Final = 1.0
-# Time that worker processes take to start and import this package, as measured [s].
+# Time that worker processes take to start and import this package, as measured; a chunk takes as
+# long: a lost worker loses little, and transfer takes a small part [s].
 START_SECONDS: Final = 2.0
 
 
@@ -54,7 +51,7 @@ def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate
     cases = tables.sample(source)
     # The first case includes the time of everything built on first use.
     vectorized.solve(spec, cases.slice(0, 1))
-    size, solving = _FIRST_SAMPLE, 0.0
+    size, solving = 1, 0.0
     while solving < _SAMPLE_SECONDS:
         part = cases.take(np.arange(0, cases.num_rows, max(cases.num_rows // size, 1)))
         start = process_time()
@@ -73,7 +70,7 @@ def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate
     start_up = START_SECONDS if processes > 1 else 0.0
     return Estimate(
         rows=source.rows,
-        chunk=min(2 ** int(log2(max(_CHUNK_SECONDS / solving, 1.0))), tables.ROW_GROUP),
+        chunk=min(2 ** int(log2(max(START_SECONDS / solving, 1.0))), tables.ROW_GROUP),
         processes=processes,
         seconds=start_up + source.rows * (solving / processes + writing),
         disk=2 * source.rows * rows.nbytes / part.num_rows,

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import IntEnum
 from importlib.metadata import version
 from typing import Any, Final, get_args
 
@@ -31,6 +32,18 @@ TEXTS: Final = frozenset({"regime", WARNING, ERROR})
 """Columns of the result that are not numbers."""
 # Packages on which the last digits of the result, and the bytes of its file, depend.
 _PACKAGES: Final = ("numpy", "scipy", "pyarrow")
+
+
+class ExitStatus(IntEnum):
+    """Exit status of a sweep; docs/sweeps.md lists them."""
+
+    DONE = 0
+    ENDED_EARLY = 1
+    INVALID_INPUT = 2
+    """As argparse reports invalid arguments."""
+    ALL_FAILED = 3
+    INTERRUPTED = 130
+    """As shells report programs terminated by SIGINT."""
 
 
 class SweepError(Exception):

@@ -15,22 +15,28 @@ import pyarrow as pa
 from tqdm import tqdm
 
 from mdr_core.errors import InputError
+from mdr_service.problems import MAX_ERRORS
 from mdr_service.schemas.flat import flat, nested
 from mdr_sweep import resources, scheduler, vectorized
 from mdr_sweep.checkpoint import Checkpoint
 from mdr_sweep.request_columns import field
-from mdr_sweep.spec import ERROR, MAXIMA, QUANTITIES, WARNING, Spec, UsageError, versions
+from mdr_sweep.spec import (
+    ERROR,
+    MAXIMA,
+    QUANTITIES,
+    WARNING,
+    ExitStatus,
+    Spec,
+    UsageError,
+    versions,
+)
 from mdr_sweep.tables import SUFFIXES, Grid, Source, Table, write
 
-# Exit status of a sweep of which every case failed.
-_ALL_FAILED: Final = 3
 # Interval of progress reports into a log [s].
 _LOG_SECONDS: Final = 30.0
 _UNITS: Final = "any consistent system, that of the input: with m and N, pressures are in Pa"
 # Numbers in an error, which vary from case to case; the steps of a JSON pointer follow a slash.
 _NUMBER: Final = re.compile(r"(?<![\w/.])[-+]?[0-9][\w.+-]*")
-# Reasons that the summary lists.
-_MAX_REASONS: Final = 10
 
 
 def run(arguments: Namespace) -> int:
@@ -41,7 +47,7 @@ def run(arguments: Namespace) -> int:
     estimate = resources.estimate(spec, source, arguments.workers)
     if arguments.plan:
         sys.stdout.write("".join(f"{line}\n" for line in estimate.lines))
-        return 0
+        return ExitStatus.DONE
     known = {} if arguments.restart else checkpoint.manifest
     chunk = arguments.chunk or known.get("chunk") or estimate.chunk
     # All on which the numbers of the result depend.
@@ -66,7 +72,7 @@ def run(arguments: Namespace) -> int:
         with checkpoint.result() as path:
             write(path, arguments.out.suffix, checkpoint.chunks(), identity | {"units": _UNITS})
     sys.stderr.write("".join(f"{line}\n" for line in lines))
-    return _ALL_FAILED if failed == source.rows else 0
+    return ExitStatus.ALL_FAILED if failed == source.rows else ExitStatus.DONE
 
 
 def specified(arguments: Namespace) -> tuple[Spec, Source]:
@@ -121,11 +127,10 @@ def summary(batches: Iterable[pa.RecordBatch]) -> tuple[int, list[str]]:
         rows += len(errors)
     failed = sum(count for count, _, _ in reasons.values())
     lines = [f"{rows:,} cases: {rows - failed:,} solved, {failed:,} failed"]
-    for count, row, error in sorted(reasons.values(), reverse=True)[:_MAX_REASONS]:
+    for count, row, error in sorted(reasons.values(), reverse=True)[:MAX_ERRORS]:
         lines.append(f"{count:>10,}  {error} (first in row {row:,})")
-    if len(reasons) > _MAX_REASONS:
-        more = len(reasons) - _MAX_REASONS
-        lines.append(f"and {more} more reasons; see the column {ERROR}")
+    if len(reasons) > MAX_ERRORS:
+        lines.append(f"and {len(reasons) - MAX_ERRORS} more reasons; see the column {ERROR}")
     return failed, lines
 
 

@@ -20,8 +20,6 @@ from mdr_sweep.spec import UsageError
 # Rows of a row group of a Parquet file, and the largest number in a chunk: about 10 MB. Arrays of
 # so many cases fit the processor's cache; larger ones take up to twice as long per case.
 ROW_GROUP: Final = 65_536
-# Bytes of CSV that are parsed at once.
-_BLOCK: Final = 4 * 1024**2
 # Values of an axis, which are held in memory: 80 MB.
 _MAX_VALUES: Final = 10_000_000
 # Parts of a sample, so that it represents a sorted input.
@@ -86,7 +84,7 @@ class Table:
                 yield from reader
 
     def _csv(self) -> pv.CSVStreamingReader:
-        read = pv.ReadOptions(block_size=_BLOCK, use_threads=False)
+        read = pv.ReadOptions(use_threads=False)
         with pv.open_csv(self.path, read_options=read) as head:
             kinds = dict.fromkeys(head.schema.names, pa.string())
         convert = pv.ConvertOptions(column_types=kinds, strings_can_be_null=True, null_values=[""])
