@@ -12,8 +12,8 @@ from anyio.from_thread import BlockingPortal, start_blocking_portal
 from fastapi import FastAPI
 
 from mdr_service.app import create_app
+from mdr_service.compute_processes import WorkerPool
 from mdr_service.settings import SETTINGS
-from mdr_service.workers import WorkerPool
 
 JSON = {"content-type": "application/json"}
 # Slow machines must not fail tests that do not measure time.

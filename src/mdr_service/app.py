@@ -13,8 +13,8 @@ from fastapi import FastAPI
 from mdr_core import __version__
 from mdr_service import health, middleware, openapi
 from mdr_service.api import explorer, operations, queries
+from mdr_service.compute_processes import WorkerPool
 from mdr_service.settings import SETTINGS
-from mdr_service.workers import WorkerPool
 
 
 @asynccontextmanager

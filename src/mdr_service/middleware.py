@@ -17,22 +17,20 @@ from starlette.requests import ClientDisconnect
 from starlette.responses import Response
 from starlette.routing import Match, Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from uvicorn.protocols.http.flow_control import HIGH_WATER_LIMIT
 
 from mdr_core import __version__
 from mdr_service import observability, problems
 from mdr_service.observability import RequestRecord
 from mdr_service.problems import ServiceError
+from mdr_service.protocol import LINGER_SECONDS
 from mdr_service.serializers import JSON
 from mdr_service.settings import SETTINGS
 
-LONG: Final = 65_536
-"""Length above which a body counts; the server buffers as much of every connection [bytes]."""
 # Ids that a client can give to its requests.
 _ID: Final = re.compile(r"[A-Za-z0-9._~+/=-]{1,64}")
 # Status in the log for a client that disconnected before the response, as in nginx.
 _CLIENT_CLOSED_REQUEST: Final = 499
-# Time for a rejected client to finish sending.
-_LINGER_SECONDS: Final = 1.0
 _ALWAYS: Final = (
     (b"x-content-type-options", b"nosniff"),
     (b"mdr-version", __version__.encode("ascii")),
@@ -62,7 +60,10 @@ def install(app: FastAPI) -> None:
 
 
 class Transfers:
-    """Total length of long bodies, at most `limit` bytes unless a single request has them."""
+    """Total length of long bodies, at most `limit` bytes unless a single request has them.
+
+    A body is long above what the server buffers of every connection.
+    """
 
     def __init__(self, limit: int) -> None:
         self._limit = limit
@@ -156,9 +157,9 @@ def _sender(record: RequestRecord, send: Send) -> Send:
             await send({**message, "headers": [*message["headers"], *own]})
             return
         body = memoryview(message.get("body", b""))
-        while len(body) > LONG:
-            await send({"type": message["type"], "body": body[:LONG], "more_body": True})
-            body = body[LONG:]
+        while len(body) > HIGH_WATER_LIMIT:
+            piece, body = body[:HIGH_WATER_LIMIT], body[HIGH_WATER_LIMIT:]
+            await send({"type": message["type"], "body": piece, "more_body": True})
         await send({**message, "body": body})
 
     return send_pieces
@@ -211,7 +212,7 @@ async def read_body(request: Request) -> bytes:
         size += len(chunk)
         if size > SETTINGS.max_body_bytes:
             raise await _too_large(request)
-        if size > LONG:
+        if size > HIGH_WATER_LIMIT:
             hold(request, len(chunk))
         chunks.append(chunk)
     return b"".join(chunks)
@@ -219,7 +220,7 @@ async def read_body(request: Request) -> bytes:
 
 async def _too_large(request: Request) -> ServiceError:
     # A connection closed with unread data is reset, and its response may be lost: read the rest.
-    with move_on_after(_LINGER_SECONDS):
+    with move_on_after(LINGER_SECONDS):
         while (await request.receive()).get("more_body"):
             pass
     detail = f"the limit is {SETTINGS.max_body_bytes} bytes"

@@ -85,12 +85,6 @@ CURRENT: Final[ContextVar[RequestRecord | None]] = ContextVar("request", default
 """Record of the current request."""
 
 
-def client() -> str:
-    """Return the address of the client of the current request."""
-    record = CURRENT.get()
-    return record.client if record else ""
-
-
 class JsonLines(logging.Formatter):
     """One line of JSON per log record, with the id of the current request."""
 

@@ -1,10 +1,9 @@
 """HTTP/1.1 protocol of the server: uvicorn's on h11, with bounds against hostile clients.
 
 h11 bounds what it keeps of an incomplete request, and reads the next request after the response to
-the one before; the kernel drops a client that reads nothing. Time and the number of headers are
-bounded here, because the application has no access to them. The class relies on internals of
-uvicorn, whose version is pinned for that reason; tests check that every overridden method exists
-and is called.
+the one before; the kernel drops a client that reads nothing. The time of arrival is bounded here,
+because the application has no access to it. The class relies on internals of uvicorn, whose version
+is pinned for that reason; tests check that every overridden method exists and is called.
 """
 
 import re
@@ -15,7 +14,9 @@ from typing import Any, Final, cast
 
 import h11
 import orjson
+from h11._connection import DEFAULT_MAX_INCOMPLETE_EVENT_SIZE
 from uvicorn.config import Config
+from uvicorn.protocols.http.flow_control import HIGH_WATER_LIMIT
 from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 from uvicorn.server import ServerState
 
@@ -23,19 +24,10 @@ from mdr_service import observability, problems
 from mdr_service.problems import ProblemType, ServiceError
 from mdr_service.settings import SETTINGS
 
-MAX_HEADER_BYTES: Final = 32_768
-"""Maximum length of request line and headers; nginx has 32 kB as well, Apache 8 kB a line."""
-MAX_HEADER_FIELDS: Final = 100
-"""Maximum number of headers, as in Apache."""
-# Interval at which the arrival of a request is checked.
-_CHECK_SECONDS: Final = 2.0
-# Time for which a client may read nothing of a response: longer than the pauses of slow mobile
-# networks, which last some seconds.
-_WRITE_SECONDS: Final = 10.0
-# Send buffer of the kernel, which by default keeps megabytes of each response.
-_SEND_BUFFER_BYTES: Final = 131_072
-# Time for a rejected client to finish sending and read the response.
-_LINGER_SECONDS: Final = 1.0
+MAX_HEADER_BYTES: Final = DEFAULT_MAX_INCOMPLETE_EVENT_SIZE
+"""Maximum length of request line and headers, that of h11."""
+LINGER_SECONDS: Final = 1.0
+"""Time for a rejected client to finish sending and read the response."""
 # Start of the client's own text in a message of h11.
 _SENT: Final = re.compile(r":? (?:bytearray|b['\"]).*", re.DOTALL)
 
@@ -53,42 +45,43 @@ class BoundedProtocol(H11Protocol):
         app_state: dict[str, Any],
         _loop: AbstractEventLoop | None = None,
     ) -> None:
-        config.h11_max_incomplete_event_size = MAX_HEADER_BYTES
         super().__init__(config, server_state, app_state, _loop)
         self._rejected = False
-        # Time of the first byte of the current request, or of the connection.
-        self._awaited_since = self.loop.time()
-        self._check = self.loop.call_later(_CHECK_SECONDS, self._check_arrival)
+        self._arrival = self.loop.call_later(SETTINGS.request_seconds, self._check_arrival)
 
     # uvicorn has the narrower type as well.
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
         link = transport.get_extra_info("socket")
-        link.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)
+        # As much as uvicorn buffers: by default the kernel keeps megabytes of each response.
+        link.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, HIGH_WATER_LIMIT)
         if option := getattr(socket, "TCP_USER_TIMEOUT", None):
             # Of Linux.
-            link.setsockopt(socket.IPPROTO_TCP, option, round(1e3 * _WRITE_SECONDS))
+            link.setsockopt(socket.IPPROTO_TCP, option, round(1e3 * SETTINGS.request_seconds))
 
     def connection_lost(self, exc: Exception | None) -> None:
-        self._check.cancel()
+        self._arrival.cancel()
         self._unset_keepalive_if_required()
         super().connection_lost(exc)
 
+    def _await_request(self) -> None:
+        """Start the time of a request: its first byte is there, or it is the next one."""
+        self._arrival.cancel()
+        self._arrival = self.loop.call_later(SETTINGS.request_seconds, self._check_arrival)
+
     def _check_arrival(self) -> None:
         """Close the connection if its client sends too slowly."""
-        self._check = self.loop.call_later(_CHECK_SECONDS, self._check_arrival)
-        late = self.loop.time() - self._awaited_since > SETTINGS.request_seconds
         awaited = self.timeout_keep_alive_task is None and (
             self.conn.their_state in {h11.IDLE, h11.SEND_BODY}
         )
-        if late and awaited and not self._rejected and not self.transport.is_closing():
+        if awaited and not self._rejected and not self.transport.is_closing():
             in_headers = self.conn.their_state is h11.IDLE
             slow = problems.HEADERS_TOO_SLOW if in_headers else problems.BODY_TOO_SLOW
             self._reject(slow, f"a request must arrive within {SETTINGS.request_seconds:g} s")
 
     def data_received(self, data: bytes) -> None:
         if self.timeout_keep_alive_task is not None:
-            self._awaited_since = self.loop.time()
+            self._await_request()
         # A piece at a time: some ten thousand short headers would delay the other connections.
         for begin in range(0, len(data), MAX_HEADER_BYTES):
             if not self._rejected:
@@ -111,7 +104,7 @@ class BoundedProtocol(H11Protocol):
         read another request: RFC 9112, 2.3 and 6.1.
         """
         size = sum([len(name) + len(value) for name, value in self.headers])
-        if size > MAX_HEADER_BYTES or len(self.headers) > MAX_HEADER_FIELDS:
+        if size > MAX_HEADER_BYTES:
             raise h11.RemoteProtocolError("headers are too large", error_status_hint=431)
         names, version = {name for name, _ in self.headers}, self.scope["http_version"]
         if version not in {"1.0", "1.1"}:
@@ -121,13 +114,12 @@ class BoundedProtocol(H11Protocol):
         return False
 
     def on_response_complete(self) -> None:
-        self._awaited_since = self.loop.time()
+        self._await_request()
         super().on_response_complete()
 
     def _reject_malformed(self, error: h11.RemoteProtocolError) -> None:
         if error.error_status_hint == problems.HEADERS_TOO_LARGE.status:
-            detail = f"the limits are {MAX_HEADER_BYTES} bytes and {MAX_HEADER_FIELDS} fields"
-            self._reject(problems.HEADERS_TOO_LARGE, detail)
+            self._reject(problems.HEADERS_TOO_LARGE, f"the limit is {MAX_HEADER_BYTES} bytes")
         else:
             self._reject(problems.MALFORMED_HTTP, _SENT.sub("", str(error)))
 
@@ -154,4 +146,4 @@ class BoundedProtocol(H11Protocol):
         self.transport.write(b"".join((status, *lines, b"\r\n", document)))
         # A connection closed with unread data is reset, and the client may lose the response.
         self.flow.resume_reading()
-        self.loop.call_later(_LINGER_SECONDS, self.transport.close)
+        self.loop.call_later(LINGER_SECONDS, self.transport.close)

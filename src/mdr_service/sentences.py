@@ -53,8 +53,6 @@ _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     ("too_short", "bodies"): BODIES,
 }
 _BOUNDS: Final = {"ge": "at least", "gt": "greater than", "le": "at most", "lt": "less than"}
-# Numbers that have to be positive have a lower bound, which no unit system reaches.
-_TINY: Final = 1e-15
 _MODELS: Final[Sequence[_Model]] = (BatchQuery, *(query.model for query in SCHEMAS.values()))
 _REQUESTS: Final = {model.__name__: model for model in _MODELS}
 
@@ -150,7 +148,7 @@ def _length(error: ErrorDetails, _place: Path, _model: _Model | None) -> str:
 def _range(error: ErrorDetails, place: Path, _model: _Model | None) -> str:
     bounds: dict[str, float] = dict(error["ctx"])
     least = bounds.get("ge")
-    if least is not None and 0 <= least <= _TINY:
+    if least is not None and 0 <= least < 1:
         return f"{POSITIVE}, at least {least:g}" if least else not_negative(_field(place))
     ((end, bound),) = bounds.items()
     return f"must be {_BOUNDS[end]} {bound:.15g}"

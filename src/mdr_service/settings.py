@@ -61,7 +61,8 @@ class Settings(BaseModel):
         10.0,
         gt=0,
         le=86_400,
-        description="Maximum time in which a request arrives, headers and body [s].",
+        description="Maximum time in which a request arrives, headers and body, and for which its "
+        "client may read nothing of the response [s].",
     )
     cors_origins: Annotated[tuple[_Origin, ...], BeforeValidator(_separated)] = Field(
         (), description="Origins allowed by CORS, separated by commas."

@@ -12,8 +12,8 @@ from collections import Counter
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 
+from mdr_service.api.query_route import AT_ONCE_BYTES
 from mdr_service.schemas.examples import EXAMPLES
-from mdr_service.workers import AT_ONCE_BYTES
 from tests.faults.load import HOST, Client, ResetError, post, request
 
 MEGABYTE = 2**20

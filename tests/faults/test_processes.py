@@ -210,8 +210,8 @@ def ready(port: int) -> int:
 def test_stopped_compute_processes_are_replaced(state: str) -> None:
     """Within 15 s; until then the instance is not ready, and queries are rejected."""
     port = free_port()
-    # A busy process is missed after its time limit; starting another one takes some seconds.
-    with running(service(port), port, MDR_BUDGET_SECONDS="8") as process:
+    # A process is missed after its time limit; starting another one takes some seconds.
+    with running(service(port), port, MDR_BUDGET_SECONDS="4") as process:
         expected = ask(port, "/v1/tangential/history", LONGER)
         stopped = computing(process.pid)
         pool = ThreadPoolExecutor(4)
@@ -222,10 +222,10 @@ def test_stopped_compute_processes_are_replaced(state: str) -> None:
         for each in stopped:
             each.suspend()
         began = time.monotonic()
-        assert ready(port) == 503
+        assert ready(port) in {503, 504}
         assert ask(port, "/v1/normal", SMALL)[0] == 200
         while (status := ready(port)) != 200:
-            assert status == 503
+            assert status in {503, 504}
             assert time.monotonic() - began < 15.0
         answers.append(pool.submit(ask, port, "/v1/tangential/history", LONGER))
         computed = [each.result() for each in answers]

@@ -9,8 +9,8 @@ from httpx import ASGITransport, AsyncClient, Response
 
 from mdr_service import middleware
 from mdr_service.app import create_app
+from mdr_service.compute_processes import WorkerPool
 from mdr_service.settings import SETTINGS, from_environment
-from mdr_service.workers import WorkerPool
 
 PAGE = "https://page.example"
 HERTZ = {"profile": {"kind": "paraboloid", "radius": 0.01}, "material": {"e_star": 1e11}}

@@ -10,7 +10,7 @@ import warnings
 import pytest
 
 from mdr_service import observability
-from mdr_service.compute_process import _HEAD
+from mdr_service.compute_processes import _HEAD
 from mdr_service.observability import LogStream
 from tests.faults.server import PATIENCE
 
@@ -33,13 +33,16 @@ def test_lines_are_lost_and_counted_while_nobody_reads(monkeypatch: pytest.Monke
 
 def test_warning_in_a_compute_process_is_a_line_of_json() -> None:
     call = pickle.dumps((warnings.warn, ("a picture is too small",)))
-    process = subprocess.run(
-        [sys.executable, "-c", "from mdr_service.compute_process import serve; serve()"],
-        input=_HEAD.pack(len(call)) + call,
-        capture_output=True,
-        check=True,
-        timeout=PATIENCE,
-    )
-    (line,) = map(json.loads, process.stderr.splitlines())
+    command = [sys.executable, "-c", "from mdr_service.compute_processes import serve; serve()"]
+    pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+    with subprocess.Popen(command, **pipes) as process:
+        assert process.stdin
+        assert process.stdout
+        process.stdin.write(_HEAD.pack(len(call)) + call)
+        process.stdin.flush()
+        process.stdout.read(_HEAD.size)
+        _, lines = process.communicate(timeout=PATIENCE)
+    (line,) = map(json.loads, lines.splitlines())
+    assert process.returncode == 0
     assert line["level"] == "warning"
     assert "a picture is too small" in line["message"]

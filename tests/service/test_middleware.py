@@ -8,11 +8,12 @@ from typing import Any
 import pytest
 from fastapi import FastAPI, Request
 from starlette.responses import Response
+from uvicorn.protocols.http.flow_control import HIGH_WATER_LIMIT
 
 from mdr_service import middleware
-from mdr_service.middleware import LONG, Transfers, hold, read_body
+from mdr_service.middleware import Transfers, hold, read_body
 
-TEXT = bytes(range(256)) * (LONG // 100)
+TEXT = bytes(range(256)) * (HIGH_WATER_LIMIT // 100)
 
 
 class Connection:
@@ -83,7 +84,7 @@ def test_long_response_is_sent_in_chunks() -> None:
         result = await Connection(app).run()
         assert result.body == TEXT
         pieces = [len(message["body"]) for message in result.sent[1:]]
-        assert max(pieces) == LONG
+        assert max(pieces) == HIGH_WATER_LIMIT
         assert [message.get("more_body", False) for message in result.sent[1:]][-2:] == [
             True,
             False,
@@ -113,7 +114,7 @@ def test_long_response_is_rejected_while_others_are_sent() -> None:
 
 def test_long_body_is_rejected_while_others_are_received() -> None:
     async def test() -> None:
-        app = application(echo, 4 * LONG)
+        app = application(echo, 4 * HIGH_WATER_LIMIT)
         json_type = {"content_type": "application/json"}
         first = Connection(app, "POST", TEXT, **json_type)
         first.incoming[0]["more_body"] = True

@@ -467,8 +467,8 @@ def test_panels_need_height(client: Client) -> None:
     assert response.status_code == 422
     (error,) = response.json()["errors"]
     assert error["pointer"] == "/size"
-    assert "3 panels need at least 90x90 mm" in error["detail"]
-    fits = client.request("POST", "/v1/stress?format=svg&size=90x90", json=STRESS)
+    assert "3 panels need at least 90x80 mm" in error["detail"]
+    fits = client.request("POST", "/v1/stress?format=svg&size=90x80", json=STRESS)
     assert fits.status_code == 200
 
 

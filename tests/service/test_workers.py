@@ -16,10 +16,9 @@ from anyio.from_thread import start_blocking_portal
 
 from mdr_core.errors import AccuracyError, DefectError, InputError
 from mdr_service import observability, problems
-from mdr_service.compute_process import ComputeProcess
+from mdr_service.compute_processes import ComputeProcess, WorkerPool
 from mdr_service.problems import ServiceError
 from mdr_service.settings import Settings
-from mdr_service.workers import WorkerPool
 
 pytestmark = [pytest.mark.long, pytest.mark.alone]
 

@@ -11,15 +11,13 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from mdr_service.serializers.panels import LINE, Map, Panel, Units, label
+from mdr_service.serializers.panels import FRAME, LINE, Map, Panel, Units, label
 
 # Beside infinite values the axes end at this multiple of the highest decile, and the colours of a
 # map at one of the highest fiftieth.
 _HEADROOM: Final = 1.5
-# Usual width of a picture, and heights of a panel and of what surrounds the panels [mm].
-_WIDTH, _PANEL, _FRAME = 180, 65, 35
-# Below these sizes of a picture and of a panel, labels are in small type [mm].
-_NARROW, _LOW = 120, 50
+# Usual width of a picture, and height of a panel [mm].
+_WIDTH, _PANEL = 180, 65
 # Maps less square than this have unequal scales.
 _FLAT: Final = 0.2
 # Millimetres in an inch.
@@ -69,8 +67,9 @@ def draw(
     size : width and height [mm]; by default the usual size.
     units : units that the labels name.
     """
-    width, height = size or (_WIDTH, _FRAME + len(panels) * _PANEL)
-    is_small = width < _NARROW or height < _FRAME + len(panels) * _LOW
+    usual = _WIDTH, FRAME + len(panels) * _PANEL
+    width, height = size or usual
+    is_small = width < usual[0] or height < usual[1]
     content = io.BytesIO()
 
     def text(quantity: str) -> str:

@@ -14,6 +14,8 @@ Array = NDArray[np.float64]
 _DRAWN: Final = 6
 LINE: Final = 30
 """Fewer points than this are marks without a line."""
+FRAME: Final = 35
+"""Height of what surrounds the panels [mm]."""
 
 _DIMENSIONS: Final = {
     name: str(field.json_schema_extra["x-dimension"])

@@ -1,48 +1,121 @@
-"""Compute processes of the server, and the queue before them.
+"""Compute processes of the server: their queue, their handles, and the loop that they run.
 
 Computations that are longer than a round trip run in a process of their own: a thread would hold
 the global interpreter lock (GIL), and could not be terminated. They wait in the order of arrival
 for up to `queue_seconds`, then run for up to `budget_seconds`; a single limit would terminate
 computations half-way that had mainly waited. Of those that wait, the client that computes least is
 next, and one that computes in several processes gives back the last while another waits.
+
+Calls and outcomes are pickled, and preceded by their length.
 """
 
 import logging
-from asyncio import CancelledError, Event, Future, create_task, wait
+import os
+import pickle
+import signal
+import struct
+import sys
+import threading
+import traceback
+from asyncio import (
+    CancelledError,
+    Event,
+    Future,
+    StreamReader,
+    StreamWriter,
+    create_subprocess_exec,
+    create_task,
+    gather,
+    sleep,
+    subprocess,
+    timeout,
+    wait,
+)
 from collections import Counter
 from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from math import ceil
+from queue import SimpleQueue
 from time import monotonic
-from typing import Any, Final, TypeVar, cast
+from typing import Any, Final, Self, TypeVar, cast
 
-from anyio import CancelScope, create_task_group, move_on_after, sleep
-
+from mdr_core.errors import DefectError
 from mdr_service import observability, problems
-from mdr_service.compute_process import ComputeProcess
 from mdr_service.problems import ServiceError
 from mdr_service.settings import Settings
 
 _Result = TypeVar("_Result")
 
-AT_ONCE_BYTES: Final = 16_384
-"""Longest query that is parsed on the event loop; the worst one is rejected in 2 ms."""
 # A start takes a second or two, most of it for SciPy.
 _START_SECONDS: Final = 30.0
 # Part of `queue_seconds` for which a computation waits before it displaces another.
 _FAIR_SHARE: Final = 0.25
 # Pause after a failure: short enough to recover soon, long enough not to use up a core.
 _PAUSE: Final = 1.0
+# Before each message: its length.
+_HEAD: Final = struct.Struct("Q")
+# With fewer cores than processes, the event loop has priority.
+_NICENESS: Final = 5
 
 _logger: Final = logging.getLogger(__name__)
+
+
+class ComputeProcess:
+    """Handle of a compute process, which is killed if a call does not end as it should."""
+
+    def __init__(self, process: subprocess.Process) -> None:
+        self._process = process
+        self._calls = cast("StreamWriter", process.stdin)
+        self._outcomes = cast("StreamReader", process.stdout)
+        self.usable = True
+        self.end = "start"
+        """Reason for which it will have ended if nothing else happens."""
+
+    @classmethod
+    async def start(cls) -> Self:
+        """Start a process; raise OSError if the system cannot."""
+        # More BLAS threads than cores slow each other down. Modules are found as in the server.
+        environment = {"OPENBLAS_NUM_THREADS": "1", **os.environ}
+        environment["PYTHONPATH"] = os.pathsep.join(sys.path)
+        command = (sys.executable, "-P", "-c", f"from {__name__} import serve; serve()")
+        pipe = subprocess.PIPE
+        return cls(await create_subprocess_exec(*command, env=environment, stdin=pipe, stdout=pipe))
+
+    async def call(self, seconds: float, function: Callable[..., object], *arguments: Any) -> Any:
+        """Return the result of a function of a module, or the exception that it raised.
+
+        Any exception raised here is about the process, which is killed: TimeoutError if the
+        function takes longer than `seconds`, others if the process ends.
+        """
+        message = pickle.dumps((function, arguments))
+        try:
+            async with timeout(seconds):
+                self._calls.writelines((_HEAD.pack(len(message)), message))
+                await self._calls.drain()
+                (length,) = _HEAD.unpack(await self._outcomes.readexactly(_HEAD.size))
+                # The pipe's other end is the server's own code.
+                return pickle.loads(await self._outcomes.readexactly(length))  # noqa: S301
+        except BaseException:
+            self.kill()
+            raise
+
+    def kill(self) -> None:
+        """Terminate the process at once."""
+        self.usable = False
+        with suppress(ProcessLookupError):
+            self._process.kill()
+
+    async def wait(self) -> int:
+        """Return the exit status of the process once it has ended."""
+        return await self._process.wait()
 
 
 @dataclass(eq=False)
 class _Job:
     """A computation that waits or runs."""
 
-    client: str = field(default_factory=observability.client)
+    client: str
     """Address of the client."""
     since: float = field(default_factory=monotonic)
     """Time at which it began to wait."""
@@ -75,17 +148,17 @@ class WorkerPool:
         """
         observability.QUEUE.set_function(lambda: len(self._waiting))
         observability.PROCESSES.set_function(lambda: sum(each.usable for each in self._processes))
-        async with create_task_group() as tasks:
-            self._supervised = True
-            try:
-                for _ in range(self._settings.compute_processes):
-                    tasks.start_soon(self._keep_process, self_test)
-                with move_on_after(_START_SECONDS):
-                    await self._settled.wait()
-                yield
-            finally:
-                self._supervised = False
-                tasks.cancel_scope.cancel()
+        self._supervised = True
+        numbers = range(self._settings.compute_processes)
+        keepers = [create_task(self._keep_process(self_test)) for _ in numbers]
+        try:
+            await self._settled.wait()
+            yield
+        finally:
+            self._supervised = False
+            for each in keepers:
+                each.cancel()
+            await gather(*keepers, return_exceptions=True)
 
     async def _keep_process(self, self_test: Callable[[], object]) -> None:
         """Start one process after the other."""
@@ -116,8 +189,7 @@ class WorkerPool:
             if self._supervised:
                 observability.RESTARTS.labels(process.end).inc()
             process.kill()
-            with CancelScope(shield=True):
-                status = await ended
+            status = await ended
             if self._supervised:
                 _logger.warning("compute process ended with status %d: %s", status, process.end)
 
@@ -136,11 +208,15 @@ class WorkerPool:
         Raises ServiceError if the queue is full, the wait or the computation takes too long, or
         the process is lost; besides all that the function raises.
         """
-        job = _Job()
-        process = await self._take_process(job)
+        record = observability.CURRENT.get()
+        job = _Job(record.client if record else "")
+        try:
+            process = await self._take_process(job)
+        finally:
+            if record:
+                record.queued += job.age
         self._running[job] = process
         try:
-            await process.beat()
             outcome = await process.call(self._settings.budget_seconds, function, *arguments)
         except TimeoutError:
             process.end = "time"
@@ -152,7 +228,7 @@ class WorkerPool:
             if process.end == "displaced":
                 reason = "terminated: another client waited, and this one computed more"
                 raise self._busy(reason) from None
-            raise _lost("the compute process ended or did not respond") from error
+            raise _lost("the compute process ended") from error
         finally:
             del self._running[job]
             if process.usable:
@@ -183,8 +259,6 @@ class WorkerPool:
             raise
         finally:
             self._waiting.pop(job, None)
-            if record := observability.CURRENT.get():
-                record.queued += job.age
         if turn.done():
             return turn.result()
         if len(self._processes) < self._settings.compute_processes:
@@ -214,3 +288,41 @@ def _raised(outcome: object) -> object:
 
 def _lost(detail: str) -> ServiceError:
     return ServiceError(problems.LOST, f"{detail}; try again", retry_after=1)
+
+
+def serve() -> None:
+    """Compute until the server ends, or closes the pipe: nobody then waits for a result."""
+    # A signal to the process group is for the server, which first completes its requests.
+    for each in (signal.SIGHUP, signal.SIGINT, signal.SIGTERM):
+        signal.signal(each, signal.SIG_IGN)
+    os.nice(_NICENESS)
+    calls = SimpleQueue[bytes]()
+    threading.Thread(target=_receive, args=(calls,), daemon=True).start()
+    outcomes = os.fdopen(os.dup(1), "wb")
+    # The pipe is for outcomes alone: printed text goes to standard error.
+    os.dup2(2, 1)
+    observability.configure_logging()
+    while True:
+        content = pickle.dumps(_attempt(calls.get()))
+        outcomes.writelines((_HEAD.pack(len(content)), content))
+        outcomes.flush()
+
+
+def _attempt(text: bytes) -> Any:
+    """Return the result of a call, or an exception that pickles."""
+    try:
+        # The pipe's other end is the server's own code.
+        function, arguments = pickle.loads(text)  # noqa: S301
+        return function(*arguments)
+    except problems.FAILURES as error:
+        return problems.to_problem(error)
+    except Exception:  # noqa: BLE001 -- the server logs it and responds
+        return DefectError(f"in a compute process: {traceback.format_exc()}")
+
+
+def _receive(calls: SimpleQueue[bytes]) -> None:
+    """Receive calls; end the process, whatever it computes, with the pipe."""
+    pipe = sys.stdin.buffer
+    while head := pipe.read(_HEAD.size):
+        calls.put(pipe.read(*_HEAD.unpack(head)))
+    os._exit(0)
