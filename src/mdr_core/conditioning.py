@@ -5,6 +5,7 @@ near full slip, the rounding of the load is part of their error, whatever the me
 """
 
 from collections.abc import Callable
+from typing import Final
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from mdr_core.equivalent_1d import NARROW, load_and_slope, stick_edge
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags
+
+OF_SUMS: Final = 40.0
+"""Rounding error of sums over annuli and segments, relative to that of closed forms."""
 
 
 def near_full_slip(

@@ -13,6 +13,7 @@ from mdr_core.doubles import in_blocks
 from mdr_core.elementwise import full, is_number, some, where
 from mdr_core.profiles import Paraboloid, Profile, RoundedPunch
 from mdr_core.typing import Array, Flags, Indices
+from mdr_core.validation import TIGHTEST
 
 # A stress at a radius, given as a contact coordinate, under the load of that index; all (m,).
 _Field = Callable[[Indices, Array], Array]
@@ -24,9 +25,6 @@ _SAMPLES: Final = 64
 _FEWEST: Final = 6
 # Points across the bracket of a peak, in parts of it.
 _NINE: Final = np.linspace(0.0, 1.0, 9)
-# Part of the stress by which it varies in the last bracket; a parabola exceeds its highest point by
-# 64 times less.
-_SETTLED: Final = 1e-13
 # Bound on the number of rounds, each of which narrows a bracket by a factor of four.
 _ROUNDS: Final = 24
 # Size of log(s/b) up to which one curve of Bernstein polynomials serves all rounded punches, whose
@@ -146,7 +144,7 @@ def _search(profile: Profile, edge: Array, *slip: Array, rim: Array | None = Non
         if rim is None:
             return stress
         ratio = profile.contact_radius(at) / profile.contact_radius(outer)
-        height = np.sqrt(np.maximum((1 - ratio) * (1 + ratio), _SETTLED))
+        height = np.sqrt(np.maximum((1 - ratio) * (1 + ratio), TIGHTEST))
         return stress - rim[load] * (1 / height - 1)
 
     best = np.zeros(edge.size)
@@ -194,7 +192,8 @@ def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
     """Zoom into each bracket around its highest point; the top of its peak goes to `best`.
 
     The peak is taken to exceed the highest of the nine points by no more than that exceeds the
-    lowest one: a bracket that stays below the highest peak is left.
+    lowest one: a bracket that stays below the highest peak is left. In the last bracket the stress
+    varies by rounding errors.
     """
     load, low, high = brackets
     for _ in range(_ROUNDS):
@@ -206,7 +205,7 @@ def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
         rise = top - values.min(axis=1)
         before, after = np.maximum(place - 1, 0), np.minimum(place + 1, _NINE.size - 1)
         low, high = at[rows, before], at[rows, after]
-        left = (rise > _SETTLED * top) & (top + rise > best[load])
+        left = (rise > TIGHTEST * top) & (top + rise > best[load])
         if not left.any():
             break
         load, low, high = load[left], low[left], high[left]

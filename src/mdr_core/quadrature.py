@@ -39,11 +39,6 @@ def gauss_legendre(points: int) -> tuple[Array, Array]:
 
 def in_order(weights: Array, values: Array) -> Array:
     """Return sum w_i values_i over the first axis, bit-identical for one load and for many."""
-    if len(in_blocks(values.shape[-1], weights.size)) > 1:
-        total = np.zeros(values.shape[1:])
-        for weight, value in zip(weights, values, strict=True):
-            total = total + weight * value
-        return total
     added = (1,) * (values.ndim - weights.ndim)
     spread = weights.reshape(weights.shape[:1] + added + weights.shape[1:])
     terms = np.multiply(spread, values, order="C")

@@ -21,8 +21,6 @@ from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes, only_one, require_positive, require_type
 
-# Rounding error of steps over the annulus, relative to that of the profile's closed forms.
-_STEP_ERROR: Final = 40.0
 # Relative rounding error of the load at full slip, where the normal load is prescribed: that of up
 # to three products.
 _LIMIT_ERROR: Final = 1.5 * EPS
@@ -207,7 +205,7 @@ class TangentialContact(validity.ContactResults):
     @property
     def step_error(self) -> Array:
         """Relative error of each case without that of the load at full slip [1]."""
-        return _STEP_ERROR * self.normal.error_estimates + self._width_rounding
+        return conditioning.OF_SUMS * self.normal.error_estimates + self._width_rounding
 
     @property
     def stick_error(self) -> Array:

@@ -19,7 +19,7 @@ from scipy.interpolate import PPoly
 
 from mdr_core.abel.annulus import Annulus, log_ratio
 from mdr_core.abel.displacement import Kernel, arccosine
-from mdr_core.doubles import in_blocks
+from mdr_core.doubles import EPS, in_blocks
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array
 
@@ -29,12 +29,8 @@ _FAR: Final = 2.0
 _FAR_NODES, _FAR_WEIGHTS = composite_rule(8)
 # Nodes of a piece next to r.
 _NEAR_NODES, _NEAR_WEIGHTS = composite_rule(16)
-# Distance of every place from the lower end of its piece, over the length of that.
-_BESIDE: Final = 1e-20
 # Sorted radii that share their far pieces.
 _BLOCK: Final = 16
-# Distance from the axis, over the first piece, within which a smooth stress is constant.
-_AXIS: Final = 1e-8
 
 
 def integrals(
@@ -78,7 +74,7 @@ def integrals(
     reach = np.minimum(length[piece], sign * (outer[piece] - at))
     places, root, weight = near_rule(at, distance, reach, sign)
     # Next to an end rounding error may lead beyond it, where a spline is not defined, or to x = 0.
-    low, high = left + _BESIDE * length, left + length
+    low, high = left + EPS * length, left + length
     places = np.clip(places, low[piece, None], high[piece, None])
     values = (weight * kernel(places, root)).ravel()
     ends = _NEAR_NODES.size * np.searchsorted(point, np.arange(r.size + 1))
@@ -183,8 +179,9 @@ class SlopePieces:
         low, high, width : ends c and a of the annulus, and a - c as accurate as it is narrow.
         r : radii [length], shape (m,).
         """
-        nearest, sharp = _AXIS * min(self.edges[1], high), self.rows[0, 0]
-        # Next to the axis pieces are as long as their distance from it.
+        # Next to the axis a smooth stress is constant to second order.
+        nearest, sharp = np.sqrt(EPS) * min(self.edges[1], high), self.rows[0, 0]
+        # Pieces are no longer than their distance from it.
         halves = high / 2.0 ** np.arange(1, np.log2(high / nearest) + 1)
         pieces = _pieces(np.union1d(self.edges, halves), low, high, width)
         places = np.maximum(r, nearest) if low == 0 else r

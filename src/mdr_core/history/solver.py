@@ -25,8 +25,6 @@ from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
 from mdr_core.validation import extremes, not_negative, only_one
 
-# Rounding error of the sums over the segments, relative to that of the profile.
-_SUMS: Final = 40.0
 # Place of the normal load from which a history starts.
 _BEGIN: Final = ("initial_state", "normal")
 
@@ -190,7 +188,7 @@ class LoadHistory(validity.ContactResults):
     @property
     def error_estimate(self) -> float:
         """Bound on the error of each result, relative to its largest value in the history."""
-        rounding = (_SUMS + self._condition_number) * self.normal.error_estimate
+        rounding = (conditioning.OF_SUMS + self._condition_number) * self.normal.error_estimate
         chords = self.results.error if isinstance(self.results, ExtrapolatedResults) else 0.0
         return rounding + chords + self.rounding
 
