@@ -6,7 +6,7 @@ import numpy as np
 
 from mdr_core import fields
 from mdr_core import normal as normal_contact
-from mdr_core.elementwise import broadcast, every
+from mdr_core.elementwise import broadcast
 from mdr_core.errors import InputError
 from mdr_core.history import ContactState, LoadHistory
 from mdr_core.normal import NormalContact
@@ -71,23 +71,17 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     for name in query.quantities:
         rows = broadcast(field(name, end, radius), shape)
         values[name] = np.ascontiguousarray(rows)
-    infinite: dict[str, Flags] = {}
-    if not all(every(np.isfinite(rows)) for rows in values.values()):
-        edges = np.ravel(contact.contact_radius)
-        radii = map(float, contact.profile.infinite_pressure_radii)
-        at_singular = np.isin(radius, [0.0, *radii, *edges])
-        infinite = dict.fromkeys(("pressure", "shear_stress"), at_singular)
-        checked(query, values, infinite)
+    edges = np.ravel(contact.contact_radius)
+    radii = map(float, contact.profile.infinite_pressure_radii)
+    at_singular = np.isin(radius, [0.0, *radii, *edges])
+    infinite: dict[str, Flags] = dict.fromkeys(("pressure", "shear_stress"), at_singular)
+    checked(query, values, infinite)
     method = _method(source, contact, query.quantities)
     # The error of the edges adds to that of the integrals.
     integrated = 0.0 if method == "closed_form" else max(query.rtol / 2, TIGHTEST)
-    names = set(query.quantities)
-    if "shear_stress" in names:
-        # Its edges include those of the pressure.
-        names.discard("pressure")
     at_edges = max(
         fields.edge_error(contact if name == "pressure" else partial or contact, name, radius)
-        for name in names
+        for name in query.quantities
     )
     warnings = notices(query, source) + singular(radius, values, infinite)
     error = max(source.error_estimate, integrated) + at_edges
