@@ -13,10 +13,10 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.elementwise import every, full, is_number, some, where
+from mdr_core.elementwise import every, full, in_order, is_number, some, where
 from mdr_core.inversion import Function, Sloped, invert
 from mdr_core.profiles import Profile
-from mdr_core.quadrature import NODES, gauss_legendre, in_order
+from mdr_core.quadrature import NODES, gauss_legendre
 from mdr_core.typing import Array
 from mdr_core.validation import require_inside
 

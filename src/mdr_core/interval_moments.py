@@ -18,11 +18,11 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from mdr_core.doubles import EPS, in_blocks
-from mdr_core.elementwise import some, where
+from mdr_core.elementwise import in_order, some, where
 from mdr_core.equivalent_1d import break_below, depth_step, force_step, has_many_breaks
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
-from mdr_core.quadrature import cumulative_rule, in_order
+from mdr_core.quadrature import cumulative_rule
 from mdr_core.typing import Array, Flags, Indices
 
 # Gauss nodes on an interval without a break, see notes, §10.

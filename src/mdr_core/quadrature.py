@@ -37,15 +37,6 @@ def gauss_legendre(points: int) -> tuple[Array, Array]:
     return nodes, weights
 
 
-def in_order(weights: Array, values: Array) -> Array:
-    """Return sum w_i values_i over the first axis, bit-identical for one load and for many."""
-    added = (1,) * (values.ndim - weights.ndim)
-    spread = weights.reshape(weights.shape[:1] + added + weights.shape[1:])
-    terms = np.multiply(spread, values, order="C")
-    # NumPy adds numbers that are contiguous in pairs, rows in their order.
-    return np.add.accumulate(terms)[-1] if terms[0].size == 1 else np.add.reduce(terms)
-
-
 def integrate(
     h: Integrand,
     length: Array,

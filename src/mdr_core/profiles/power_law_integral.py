@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mdr_core.elementwise import full, some, where
-from mdr_core.quadrature import NODES, PIECE, gauss_legendre, in_order
+from mdr_core.elementwise import full, in_order, some, where
+from mdr_core.quadrature import NODES, PIECE, gauss_legendre
 from mdr_core.typing import Array, Parameter
 from mdr_core.validation import extremes
 

@@ -14,12 +14,12 @@ from mdr_core.abel.displacement import Branch, Kernel, arccosine, arcsine
 from mdr_core.abel.slope_pieces import SlopePieces
 from mdr_core.abel.stress import stress_integral
 from mdr_core.doubles import TINY
-from mdr_core.elementwise import some, where
+from mdr_core.elementwise import in_order, some, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.table_fit import fit_table
 from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
-from mdr_core.quadrature import composite_rule, in_order
+from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import as_numbers, require_finite
 

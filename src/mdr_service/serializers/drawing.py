@@ -20,8 +20,6 @@ _HEADROOM: Final = 1.5
 _WIDTH, _PANEL = 180, 65
 # Maps less square than this have unequal scales.
 _FLAT: Final = 0.2
-# Millimetres in an inch.
-_INCH: Final = 25.4
 _STYLE: Final[dict[Any, Any]] = {
     "axes.formatter.limits": (-2, 4),
     "axes.formatter.use_mathtext": True,
@@ -77,7 +75,7 @@ def draw(
         return found.replace(" ", "\n") if is_small else found
 
     with mpl.rc_context(_STYLE | {"font.size": 6.5 if is_small else 9.7}):
-        figure = Figure((width / _INCH, height / _INCH), layout="constrained")
+        figure = Figure((width / 10, height / 10, "cm"), layout="constrained")
         axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
         named: dict[str, Any] = {}
         for each, panel in zip(axes, panels, strict=True):
