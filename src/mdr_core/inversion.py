@@ -15,8 +15,9 @@ Function = Callable[[Array], Array]
 # A function and the derivative of its logarithm by that of its argument.
 Sloped = Callable[[Array], tuple[Array, Array]]
 
-# Bisection alone takes about 130 steps from bounds 1e50 apart, Newton's method 5 to 10.
-_MAX_STEPS: Final = 200
+MAX_STEPS: Final = 200
+"""Bound on an iteration. Bisection alone takes about 130 steps from bounds 1e50 apart, Newton's
+method 5 to 10."""
 # Newton's steps without bisections between them.
 _ALONE: Final = 20
 # Newton's step, and distance from the target, in log, after which one more step follows. The slope
@@ -63,7 +64,7 @@ def invert(
     done = ~positive
     settling = done & positive
     with np.errstate(all="ignore"):
-        for count in range(_MAX_STEPS):
+        for count in range(MAX_STEPS):
             value, slope = function(s)
             residual = np.log(goal / value)
             known = (slope > 0) & (slope < inf)

@@ -5,7 +5,7 @@ Source: notes, §12; johnson, section 4.2.
 
 from collections.abc import Callable
 from functools import cache, lru_cache
-from math import ceil, cos, exp, inf, log, sin
+from math import ceil, cos, exp, inf, log, sin, sqrt
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
@@ -16,6 +16,7 @@ from mdr_core.elementwise import number
 from mdr_core.errors import AccuracyError, InputError
 from mdr_core.fields import graded
 from mdr_core.history import LoadHistory
+from mdr_core.inversion import MAX_STEPS
 from mdr_core.profiles import Cone, Paraboloid, Power, Profile
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.subsurface.stress import MOMENT_ERROR, on_rings
@@ -30,16 +31,16 @@ _RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 3, 1e-4, 2.0
 _ANGLES: Final = np.linspace(0, np.pi / 2, 4)
 # Points across a box around a peak, which at first reaches to the next points of the grid.
 _ACROSS: Final = np.linspace(-1, 1, 5)
-# Factor by which a box shrinks, and rounds.
-_SHRINK, _ROUNDS = 0.3, 100
-# Part of the stress by which it varies in the last box, and distance from a singular force.
+# Factor by which a box shrinks.
+_SHRINK: Final = 0.3
+# Part of the stress by which it varies in the last box, distance from a singular force, and square
+# of the step of the secant after which the next is negligible.
 _RTOL: Final = 1e-6
 # Contact coordinate over the radius of a flat below which no radius in double precision resolves
 # the stress beneath the edge: at this one it is too low by 5e-6 of its value.
 _RESOLVED: Final = 5e-13
-# Logarithms of the force at the onset: step of the secant after which the next is negligible, and
-# range.
-_AGREED, _REACH = 3e-4, 60.0
+# Range of the logarithm of the force at the onset.
+_REACH: Final = 60.0
 
 MEASURES: Final = ("von_mises", "maximum_shear")
 
@@ -238,7 +239,7 @@ def _onset(
         low, high = (low, load) if found > 0 else (load, high)
         slope = (found - excess) / (load - before) if load != before else slope
         before, excess, load = load, found, load - found / max(slope, 1 / _REACH)
-        if abs(load - before) <= _AGREED:
+        if abs(load - before) <= sqrt(_RTOL):
             return exp(load)
         if not low < load < high:
             ends = {lowest, highest} & {low, high}
@@ -325,7 +326,7 @@ def _climbed(
     place, box : angle, r and z of each start, and half the sizes of its box, shape (n, 3).
     """
     half, highest, top = box, 0.0, place[0]
-    for _ in range(_ROUNDS):
+    for _ in range(MAX_STEPS):
         axes = place[..., None] + half[..., None] * _ACROSS
         axes[:, 2] = np.abs(axes[:, 2])
         angle, r, z = np.moveaxis(axes, 1, 0)
