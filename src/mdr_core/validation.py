@@ -24,6 +24,8 @@ _NEGATIVE: Final = {
 }
 TIGHTEST, LOOSEST = 1e-13, 1e-3
 """Bounds of `rtol`: rounding errors of sums, and an error visible in a plot."""
+UNRESOLVED: Final = 0.25
+"""Relative error above which there is no answer."""
 
 
 def require_type(name: str, value: object, types: Any, needed: str) -> None:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Final
+from typing import ClassVar
 
 import numpy as np
 
@@ -11,9 +11,7 @@ from mdr_core.history.solver import LoadHistory, solve
 from mdr_core.materials import Material
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
-
-# Relative rounding error of the tangential load above which there is no answer.
-_UNRESOLVED: Final = 0.1
+from mdr_core.validation import UNRESOLVED
 
 
 @dataclass(frozen=True, repr=False)
@@ -126,7 +124,7 @@ def cycles(
         samples_per_step=samples_per_step,
         rtol=rtol,
     )
-    if history.rounding > _UNRESOLVED:
+    if history.rounding > UNRESOLVED:
         detail = (
             "the tangential load is lost in the rounding errors of the normal load: increase it"
         )

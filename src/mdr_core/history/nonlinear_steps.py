@@ -25,16 +25,13 @@ from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
 
-# Chords of the finest set from the axis to the larger end of an arc: rtol^(-1/3), within limits.
-_MIN_CHORDS: Final = 64
-# They take 1 to 8 ms per step, or 20 to 50 ms on tables of 200 points.
-_MAX_CHORDS: Final = 1024
-# Chords on every nonlinear load step, in the coarsest set.
-_MIN_CHORDS_ON_STEP: Final = 8
-# Chords of all steps together, which bounds time and memory.
-_MAX_TOTAL_CHORDS: Final = 400_000
-# Halvings from the coarsest set of chords to the finest.
-_HALVINGS: Final = SETS - 1
+# Chords of the coarsest set from the axis to the larger end of an arc: those of all sets take 1 to
+# 8 ms per step, or 20 to 50 ms on tables of 200 points.
+_CHORDS: Final = 256
+# The least on a nonlinear load step.
+_FEWEST: Final = 8
+# The most on all steps together, which bounds time and memory.
+_MOST: Final = 100_000
 # The error of the extrapolated results, in units of the change by the last halving.
 _SAFETY: Final = 2.0
 # The same on tables, where chords converge less regularly: the largest factor for 100 rough tables
@@ -43,8 +40,6 @@ _SAFETY_ON_TABLES: Final = 10.0
 # A corner of chords is off its arc by less than this part of its normal coordinate.
 _NEAREST: Final = 1e-3
 # A contact coordinate that is not zero.
-# Newton's method converges from a chord to its arc in four steps.
-_NEWTON_STEPS: Final = 6
 
 
 @dataclass(frozen=True)
@@ -104,16 +99,15 @@ class NonlinearSteps:
         last = np.append(np.diff(owner) > 0, True)
         return owner, starts, np.where(last, stop[owner], np.roll(starts, -1))
 
-    def chords(self, finest: int, halvings: int) -> tuple[LoadPoints, Indices]:
+    def chords(self, halvings: int) -> tuple[LoadPoints, Indices]:
         """Return the ends of the chords, and which of them are the samples.
 
-        `finest` chords reach from the axis to the larger end of an arc after the last halving: they
-        do not depend on other load steps, so that a path has those of its pieces.
+        Up to `_MOST` they do not depend on other load steps: a path has those of its pieces.
         """
         owner, start, stop = self._parts
-        fewest = min(_MIN_CHORDS_ON_STEP, _MAX_TOTAL_CHORDS / (start.size << _HALVINGS))
-        needed = np.abs(stop - start) / self.larger[owner] * finest / 2**_HALVINGS
-        count = np.ceil(np.maximum(needed, fewest)).astype(int) << halvings
+        travel = np.abs(stop - start) / self.larger[owner]
+        needed = np.maximum(_CHORDS * travel, _FEWEST)
+        count = np.ceil(needed * min(_MOST / needed.sum(), 1.0)).astype(int) << halvings
         count[self.rate[owner] == 0] = 1
         part, last = np.repeat(np.arange(count.size), count), np.cumsum(count) - 1
         share = (np.arange(part.size) - np.append(-1, last[:-1])[part]) / count[part]
@@ -168,19 +162,20 @@ class NonlinearSteps:
         )
 
     def _on_arcs(self, s: Array, arcs: Array, sign: Array, sums: Array) -> Array:
-        """Return the contact coordinates at which n +- tangential on arcs is equal to `sums`."""
-        profile, start, moments = self.profile, s, self.path.moments
-        normal, rate = moments.normal, sign * arcs[0]
-        for _ in range(_NEWTON_STEPS):
-            slope = profile.depth_slope(s)
-            force = slope * 2 * profile.contact_radius(s)
-            rise = force + rate * slope if moments.over_forces else slope + rate * force
-            moved = moments.conjugate(s) - arcs[1]
-            miss = normal(s) + sign * arcs[2] + rate * moved - sums
-            s = s - miss / np.where(rise > 0, rise, np.nan)
+        """Return the contact coordinates at which n +- tangential on arcs is equal to `sums`.
+
+        One step of Newton's method from the chords, whose error of 1e-6 it squares.
+        """
+        profile, moments = self.profile, self.path.moments
+        normal, rate = moments.normal(s), sign * arcs[0]
+        slope = profile.depth_slope(s)
+        force = slope * 2 * profile.contact_radius(s)
+        rise = force + rate * slope if moments.over_forces else slope + rate * force
+        miss = normal + sign * arcs[2] + rate * (moments.conjugate(s) - arcs[1]) - sums
+        moved = s - miss / np.where(rise > 0, rise, np.nan)
         # Where the arc is all but parallel to the face, the corner of the chords is as good.
-        moved = np.abs(normal(s) - normal(start))
-        return np.where(moved < _NEAREST * normal(start), s, start)
+        near = np.abs(moments.normal(moved) - normal) < _NEAREST * normal
+        return np.where(near, moved, s)
 
 
 @dataclass(frozen=True)
@@ -273,11 +268,10 @@ class ExtrapolatedResults:
         return found[0], found[1]
 
 
-def results(path: SampledPath, rtol: float) -> ExtrapolatedResults:
+def results(path: SampledPath) -> ExtrapolatedResults:
     """Return the results of a load path with nonlinear load steps.
 
-    `rtol` determines the number of chords. Raises InputError for a tangential force above mu F_N
-    anywhere on the path.
+    Raises InputError for a tangential force above mu F_N anywhere on the path.
     """
     if path.over_forces:
         # A force that changes while the bodies are separated exceeds friction there.
@@ -285,13 +279,10 @@ def results(path: SampledPath, rtol: float) -> ExtrapolatedResults:
         beyond = np.where(separated & path.nonlinear, 1.0, 0.0)
         path.within_friction(0 * beyond, beyond, path.step)
     nonlinear = NonlinearSteps(path)
-    finest = max(rtol ** (-1 / 3), _MIN_CHORDS)
-    travel = np.sum(np.abs(np.diff(path.contact_coordinate)) / nonlinear.larger)
-    finest = int(min(finest, _MAX_CHORDS, _MAX_TOTAL_CHORDS / max(travel, 1.0)))
     sets, (lines, _) = [], path.at_start
     if len(lines) == 1:
         lines *= SETS
     for halvings, line in enumerate(lines):
-        points, last = nonlinear.chords(finest, halvings)
+        points, last = nonlinear.chords(halvings)
         sets.append((StepResults(path.moments, points, line, path.begin.regime), last))
     return ExtrapolatedResults(nonlinear, tuple(sets))

@@ -6,6 +6,7 @@ from typing import Any, Final, NamedTuple, Self
 
 import numpy as np
 
+from mdr_core.doubles import ROUNDING
 from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
 from mdr_core.history.slip_layout import NORMAL
@@ -13,12 +14,10 @@ from mdr_core.history.slip_memory import Polyline
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
-# Numbers of a vertex, and of the arc above it.
-_SUMS, _ARC = NORMAL, 3
+# Numbers of an arc.
+_ARC: Final = 3
 SETS: Final = 3
 """Sets of chords from which the results of nonlinear load steps are extrapolated."""
-# By rounding a sum may decrease along a polyline by this part of the normal coordinate.
-_ROUNDING: Final = 1e-12
 # Attributes that define a table, which has no parameters.
 _TABLE: Final = ("r", "values", "breaks", "uncertainty")
 
@@ -68,15 +67,16 @@ class SavedState(NamedTuple):
         if normal <= 0:
             lines = [slip_memory.separated(normal, tangential)] * len(self.polylines)
             return tuple(lines), np.zeros((_ARC, 0))
-        columns, none = _SUMS + _ARC, [0.0] * _ARC
+        columns, none = NORMAL + _ARC, [0.0] * _ARC
         rows = [np.array([(*row, *none)[:columns] for row in line]) for line in self.polylines]
-        arcs, labels = np.unique(np.concatenate(rows)[:, _SUMS:], axis=0, return_inverse=True)
+        arcs, labels = np.unique(np.concatenate(rows)[:, NORMAL:], axis=0, return_inverse=True)
         label, found = iter((labels.ravel() - len(arcs)).tolist()), []
         for index, vertices in enumerate(rows):
-            sums, steps = vertices[:, :_SUMS], [next(label) for _ in vertices]
+            sums, steps = vertices[:, :NORMAL], [next(label) for _ in vertices]
             line = slip_memory.through(sums, steps, normal, tangential)
             growth = np.diff(line.vertices[:, :NORMAL], axis=0)
-            good = (growth.min(axis=1) >= -_ROUNDING * normal) & (growth.max(axis=1) > 0)
+            # By rounding a sum may decrease along a polyline.
+            good = (growth.min(axis=1) >= -ROUNDING * normal) & (growth.max(axis=1) > 0)
             good[0] &= line.vertices[0, NORMAL] == 0
             if not good.all():
                 detail = "exceeds the next vertex in a sum, or is the first one and not on the axis"
@@ -91,7 +91,7 @@ UNLOADED: Final = SavedState("", 0.0, 0.0, 0.0, "no_contact", ([],))
 
 def saved(line: Polyline, arcs: Array | None) -> list[list[float]]:
     """Return the vertices of a polyline below the load point, as `SavedState` has them."""
-    rows = line.vertices[:-1, :_SUMS].tolist()
+    rows = line.vertices[:-1, :NORMAL].tolist()
     if arcs is None:
         return rows
     above = arcs[:, line.load_step[1:]].T.tolist()

@@ -309,7 +309,7 @@ def solve(
     lines, _ = path.at_start
     # Under a flat punch depth and force are proportional, so that every step is straight.
     if len(lines) > 1 or (path.nonlinear.any() and not profile.has_no_partial_slip):
-        return LoadHistory(path, e_star, nonlinear_steps.results(path, rtol), rtol)
+        return LoadHistory(path, e_star, nonlinear_steps.results(path), rtol)
     results = StepResults(path.moments, path.load_points, lines[0], begin.regime)
     return LoadHistory(path, e_star, results, rtol)
 
