@@ -16,6 +16,7 @@ from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_core.validation import (
+    UNRESOLVED,
     as_numbers,
     first_index,
     require_not_negative,
@@ -66,8 +67,6 @@ _SAFETY: Final = 2.0
 _OF_FIELDS: Final = 4.0
 # The same beside a break, where both runs may err alike.
 _AT_BREAKS: Final = 10.0
-# Beyond such an estimate neither of the two runs is near the truth.
-_UNRESOLVED: Final = 0.25
 # Radii at which the two runs are compared besides the given ones, as parts of the worn annulus.
 _SAMPLES: Final = np.linspace(0.0, 1.0, 66)[1:-1]
 
@@ -306,7 +305,7 @@ def solve(
     parts = integrate(initial, numbers, rtol)
     other = WornSurface(coarser, numbers, *integrate(coarser, numbers, _LOOSER * rtol))
     found = WearEvolution(initial, numbers, *parts, coarse=other, rtol=rtol)
-    if not found.error_estimate < _UNRESOLVED:
+    if not found.error_estimate < UNRESOLVED:
         detail = "the worn annulus is not resolved: more nodes may resolve it"
         raise AccuracyError(detail, ("resolution",))
     return found

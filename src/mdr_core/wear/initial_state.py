@@ -11,7 +11,6 @@ from typing import Final
 import numpy as np
 
 from mdr_core.normal import NormalContact
-from mdr_core.quadrature import gauss_legendre
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_core.wear.annulus_maps import AnnulusMaps, annulus_maps
@@ -20,11 +19,6 @@ from mdr_core.wear.worn_annulus import ALMOST
 # Widths by which the contact may grow at c = a; it carries the force on less where c is small. The
 # contact of a paraboloid grows by half a width, that of a power 100 by less.
 _GROWTH: Final = 4.0
-# Up to this part of the stick radius a step of g is the integral of its slope: a difference has
-# a rounding error of 1e-16/_NARROW, the rule of 8 points an error of _NARROW^16.
-_NARROW: Final = 0.05
-# Points of this rule.
-_POINTS: Final = 8
 # Chebyshev terms of the tilt: the branch point of its arccosine lies a quarter of the interval
 # before it, so that 16 terms resolve it to (3/2 + sqrt(5)/2)^-16 = 2e-7.
 TILT_TERMS: Final = 16
@@ -167,26 +161,12 @@ class InitialState:
         force = float(profile.reduced_force(profile.coordinate_from_radius(radius)))
         return force / (2 * self.length_unit * self.depth_unit)
 
-    @cached_property
-    def _singular(self) -> Array:
-        """Radii at which g_0 is not smooth: the flat's, the breaks and the end [length]."""
-        profile = self.normal.profile
-        inner = np.append(0.0, profile.coordinate_breaks)
-        return np.append(profile.contact_radius(inner), profile.domain)
-
     def rise(self, stick_shift: float, offset: Array) -> Array:
         """Return g_0(c + offset) - g_0(c) for c = c_0 + stick_shift [D_0], all lengths in b_0."""
         profile, unit = self.normal.profile, self.length_unit
         stick = float(self.tangential_contact.stick_radius) + unit * stick_shift
-        by = unit * offset
-        # A narrow annulus at a break has less accuracy to lose than Gauss points at a singularity.
-        near = np.abs(self._singular - stick) < 2 * by[-1]
-        if by[-1] > _NARROW * stick or near.any():
-            g = profile.g(np.minimum(np.append(stick, stick + by), self.domain))
-            return np.asarray((g[1:] - g[0]) / self.depth_unit)
-        nodes, weights = gauss_legendre(_POINTS)
-        at = stick + np.multiply.outer(by, (1 + nodes) / 2)
-        return np.asarray(by / 2 * (profile.dg(at) @ weights) / self.depth_unit)
+        g = profile.g(np.minimum(stick + unit * np.append(0.0, offset), self.domain))
+        return np.asarray((g[1:] - g[0]) / self.depth_unit)
 
     def slope(self, x: Array) -> Array:
         """Return g_0'(x) [D_0/b_0], x in b_0, with a bound at a jump of f'."""

@@ -15,18 +15,13 @@ from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.rates import jacobian, rates
 
-# Absolute tolerance, as a part of the relative one and of the wear by the first cycles. A larger
-# one leaves errors of the pressure above that at which wear counts as ended.
+# Part of a size below which a tolerance is a part of this size: of the wear by the first cycles,
+# and of the largest slip. A larger one leaves errors of the pressure above that at which wear
+# counts as ended.
 _ABSOLUTE: Final = 0.01
-# Part of the largest slip up to which the tolerance of the slip is a part of itself: where there is
-# less, a growing stick zone takes it back before it counts.
-_MIN_SLIP: Final = 0.01
-# Full slip: the stick zone has shrunk to this part of its first distance from the flat or the axis.
-_VANISHED: Final = 1e-3
-# Scaled cycles below which the integrator's first step underflows.
-_FIRST: Final = 1e-100
-# Distance from a slope jump, as a part of the stick radius, at which the stick edge passes it.
-_AT_BREAK: Final = 1e-3
+# Relative distance at which an edge has reached a place: a slope jump, or the flat or the axis,
+# where full slip begins.
+_REACHED: Final = 1e-3
 # Most evaluations of the rates, one to two seconds. The tightest tolerance takes up to 4,500, the
 # equator of a sphere 4,700.
 _MAX_CALLS: Final = 5_000
@@ -54,9 +49,6 @@ def integrate(
         # An event is a change of sign, which comes too late here.
         _require_all_cycles(initial, cycles, 0.0, inf)
     first = float(scaled[scaled > 0][0])
-    if first < _FIRST:
-        detail = "the wear in so few cycles is too small to be resolved: request more cycles"
-        raise AccuracyError(detail, ("cycles",))
     calls = 0
 
     def counted(time: float, vector: Array) -> Array:
@@ -102,7 +94,7 @@ def _unresolved(state: AnnulusState, scaled: float) -> AccuracyError:
     initial = state.initial
     stick, edge = initial.length_unit * state.stick, initial.length_unit * float(state.x[-1])
     jumps = np.array(initial.normal.profile.infinite_pressure_radii)
-    room = _AT_BREAK * edge
+    room = _REACHED * edge
     inside = jumps[(jumps > max(stick - room, 0.0)) & (jumps < edge + room)]
     if not inside.size:
         detail = "the wear over the cycles is not resolved: more nodes or a looser rtol may help"
@@ -150,7 +142,7 @@ def _scale(initial: InitialState) -> Array:
     """Return the sizes of the changes of the vector by wear."""
     start = AnnulusState.of(initial, initial.vector)
     # In full slip the depth that can wear off is a part of the slip.
-    slip = initial.step * np.maximum(start.slip[:-1], _MIN_SLIP)
+    slip = initial.step * np.maximum(start.slip[:-1], _ABSOLUTE)
     # In a narrow annulus all but b change by a part b_0/a_0 only.
     part = initial.step / (initial.stick + initial.width)
     return np.concatenate([slip, (1.0, part, part), np.full(start.tilt_terms.shape, part)])
@@ -162,7 +154,7 @@ def _events(initial: InitialState, rtol: float) -> list[Any]:
     They are the profile's end, no more wear, and the beginning or the end of full slip.
     """
     flat = float(initial.normal.profile.first_radius) / initial.length_unit
-    vanished = flat + _VANISHED * (initial.stick - flat)
+    vanished = flat + _REACHED * (initial.stick - flat)
 
     def settling(state: AnnulusState) -> float:
         if initial.full_slip and initial.constant_force:

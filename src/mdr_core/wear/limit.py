@@ -19,6 +19,7 @@ from mdr_core.stick_zone import CONTROLS
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Parameter
 from mdr_core.validation import (
+    UNRESOLVED,
     checked_radii,
     extremes,
     first_index,
@@ -28,16 +29,8 @@ from mdr_core.validation import (
 from mdr_core.wear import limit_fields, limiting_stick, worn_annulus
 from mdr_core.wear.arguments import grid, one_amplitude
 
-# Width of the worn annulus over that of the slip annulus, where both are narrow: the mean of
-# r cos(t) - c up to the angle arccos(c/r) is two thirds of r - c.
-_NARROW: Final = 1.5
-# Part of the largest width of a worn annulus from which it reaches the end of the profile: without
-# a root the search for the width ends there, but for rounding.
-_AT_END: Final = 1 - 1e-12
 # Exponent of the slip width in the worn volume, with room.
 _OF_VOLUME: Final = 3.0
-# Relative error of a worn volume above which there is no answer.
-_UNRESOLVED: Final = 0.1
 # Least of the largest worn depth over (2/pi) (d - g(c)) arccos(c/r) at the outer edge: 0.38 of a
 # narrow annulus.
 _HIGHEST: Final = 0.2
@@ -104,10 +97,8 @@ class LimitingWear(validity.ContactResults):
             worn = where(rests, 0.0, self.normal.contact_radius)
         else:
             target = where(self.stick_zone.unbounded, 0.0, self.stick_zone.step)
-            start = where(target > 0, _NARROW * self.stick_zone.slip_width, 1.0)
-            c = self.stick_zone.radius
-            start = np.minimum(start, 0.9 * worn_annulus.largest_width(self.normal.profile, c))
-            flat = (np.ravel(part) for part in (c, target, start))
+            start = where(target > 0, self.stick_zone.slip_width, 1.0)
+            flat = (np.ravel(part) for part in (self.stick_zone.radius, target, start))
             worn = worn_annulus.width_where_worn(self.normal.profile, *flat).reshape(target.shape)
         return where(self.stick_zone.unbounded, inf, worn)
 
@@ -374,34 +365,20 @@ def solve(
     name, size = one_amplitude(tangential_displacement, tangential_force)
     unworn = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
     result = LimitingWear(unworn, limiting_stick.find(unworn, size))
-    _require_room(result)
-    lost = result.edge_rounding > _UNRESOLVED
+    lost = result.edge_rounding > UNRESOLVED
     if lost.any():
         raise AccuracyError(
             "the worn annulus lies within the rounding error of its distance from the edge of a "
             "flat, or from a jump of the slope: increase the load",
             ("load", contact.control, *first_index(lost.reshape(np.shape(result.wear_width)))),
         )
-    beyond = ~result.stick_zone.unbounded & ~np.isfinite(result.wear_radius)
+    beyond = ~result.stick_zone.unbounded & ~np.isfinite(result.wear_width)
     if beyond.any():
-        raise InputError(
-            ("load", contact.control, *first_index(beyond)),
-            "the worn annulus under this load leaves the range of double precision",
-        )
+        detail = "the worn annulus under this load leaves the range of double precision"
+        if np.isfinite(contact.profile.domain):
+            detail = (
+                f"the worn annulus would reach beyond radius {float(contact.profile.domain):.12g}, "
+                "where the profile ends: reduce the load, or extend the profile"
+            )
+        raise InputError(("load", contact.control, *first_index(beyond)), detail)
     return result
-
-
-def _require_room(wear: LimitingWear) -> None:
-    """Raise InputError if a worn annulus would reach beyond the end of the profile."""
-    profile = wear.tangential_contact.normal.profile
-    if profile.has_no_partial_slip:
-        return
-    wearing = (wear.stick_zone.step > 0) & ~wear.stick_zone.unbounded
-    largest = worn_annulus.largest_width(profile, wear.stick_radius)
-    beyond = wearing & (wear.wear_width > _AT_END * largest)
-    if beyond.any():
-        raise InputError(
-            ("load", wear.tangential_contact.normal.control, *first_index(beyond)),
-            f"the worn annulus would reach beyond radius {float(profile.domain):.12g}, where the "
-            "profile ends: reduce the load, or extend the profile",
-        )

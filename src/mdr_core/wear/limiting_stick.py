@@ -19,9 +19,9 @@ from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
 
-# Points of the search for the largest of several possible stick zones, and those of each of the
-# rounds in which the interval becomes four times narrower: a largest value is exact to 1e-16.
-_POINTS, _FEWER, _ROUNDS = 65, 9, 12
+# Points of the search for the largest of several possible stick zones, and its rounds, in each of
+# which the interval becomes 16 times narrower: a largest value is exact to 1e-16.
+_POINTS, _ROUNDS = 33, 7
 
 
 @dataclass(frozen=True)
@@ -158,14 +158,14 @@ def _first_crossing(
     function can rise, fall and rise again.
     """
     low, high = np.zeros_like(widest), widest
-    for points in (_POINTS, *(_FEWER,) * _ROUNDS):
-        places = low + np.multiply.outer(np.linspace(0.0, 1.0, points), high - low)
+    for _ in range(_ROUNDS):
+        places = low + np.multiply.outer(np.linspace(0.0, 1.0, _POINTS), high - low)
         values = np.array([function(place) for place in places])
         reached = values >= target
         first = np.where(reached.any(axis=0), reached.argmax(axis=0), values.argmax(axis=0))[None]
         # A crossing lies before the first place that reaches the target, a peak on either side.
         low = np.take_along_axis(places, np.maximum(first - 1, 0), axis=0)[0]
-        beyond = np.where(reached.any(axis=0), first, np.minimum(first + 1, points - 1))
+        beyond = np.where(reached.any(axis=0), first, np.minimum(first + 1, _POINTS - 1))
         high = np.take_along_axis(places, beyond, axis=0)[0]
     return low, high
 

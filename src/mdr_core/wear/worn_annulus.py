@@ -5,6 +5,7 @@ width is the unknown, and the root at the inner edge follows from it, not from t
 Source: notes, §9.
 """
 
+from math import inf
 from typing import Final
 
 import numpy as np
@@ -13,13 +14,11 @@ from mdr_core.abel.displacement import arccosine
 from mdr_core.doubles import TINY
 from mdr_core.inversion import invert
 from mdr_core.profiles import Profile
-from mdr_core.quadrature import gauss_legendre
+from mdr_core.quadrature import NODES, composite_rule
 from mdr_core.typing import Array
 
 # As near to the end of a profile as its functions are evaluated: they may be infinite there.
 ALMOST: Final = 1 - 1e-9
-# Gauss-Legendre nodes of the area of a segment, over an angle of at most pi/2.
-_NODES: Final = 10
 
 
 def largest_width(profile: Profile, stick: Array) -> Array:
@@ -51,7 +50,7 @@ def worn_volume(profile: Profile, stick: Array, width: Array, step: Array) -> Ar
 
 
 def width_where_worn(profile: Profile, stick: Array, step: Array, start: Array) -> Array:
-    """Return the width at which the worn depth vanishes; NaN if it is not representable.
+    """Return the width at which the worn depth vanishes; not finite without a root.
 
     There the mean of g(r cos(t)) - g(c) over 0 < t < arccos(c/r) equals the step d - g(c). It grows
     with the width wherever g does. Source: mdr-5, Eq. (5.88), for any profile; notes, §9.
@@ -72,7 +71,11 @@ def width_where_worn(profile: Profile, stick: Array, step: Array, start: Array) 
 
     name = f"{profile.kind}'s worn annulus"
     room = largest_width(profile, stick)
-    return invert(mean_rise, step, start, np.zeros_like(step), room, name)
+    with np.errstate(all="ignore"):
+        inside = (room == inf) | (step < mean_rise(room)[0])
+    step, start = np.where(inside, step, 0.0), np.minimum(start, room / 2)
+    found = invert(mean_rise, step, start, np.zeros_like(step), room, name)
+    return np.where(inside, found, inf)
 
 
 def _root(stick: Array, width: Array) -> Array:
@@ -88,6 +91,6 @@ def _rate(x: Array, root: Array) -> Array:
 def _segment(x: Array, root: Array) -> Array:
     """Return int_x^r sqrt(r^2 - t^2) dt = r^2 int_0^arccos(x/r) sin^2 t dt."""
     angle = np.arctan2(root, x)
-    nodes, weights = gauss_legendre(_NODES)
-    sines = np.sin(np.multiply.outer(angle, (1 + nodes) / 2))
-    return np.asarray((x * x + root * root) * angle / 2 * (sines**2 @ weights))
+    nodes, weights = composite_rule(NODES)
+    sines = np.sin(np.multiply.outer(angle, nodes))
+    return np.asarray((x * x + root * root) * angle * (sines**2 @ weights))
