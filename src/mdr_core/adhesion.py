@@ -47,9 +47,6 @@ _IN_PIECE: Final = 9
 _TABOR: Final = sqrt(2 * pi) * (9 * pi / 8) ** (1 / 6)
 # Tabor's number from which JKR holds. Source: johnson-greenwood.
 _JKR: Final = 5.0
-# Distance of a g'/Delta_l from pull-off, over the root of the rounding error, below which the error
-# of the contact radius is of that order: room for a slow change of phi.
-_NEAR: Final = 0.1
 
 
 class Curve:
@@ -247,7 +244,7 @@ class AdhesiveContact(NormalContact):
             return full(EPS, self.coordinate)
         punch = self.reference.normal_stiffness if name == "normal_force" else 1.0
         size = 1 + getattr(self.reference, name) / (punch * self.curve.retraction(self.coordinate))
-        return rounding * size / np.maximum(self._excess(name), _NEAR * np.sqrt(rounding))
+        return rounding * size / np.maximum(self._excess(name), np.sqrt(rounding))
 
     @cached_property
     def error_estimates(self) -> Array:
