@@ -18,8 +18,7 @@ from mdr_core.doubles import TINY
 from mdr_core.equivalent_1d import has_many_breaks
 from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import TractionSegments
-from mdr_core.history.load_path import SampledPath
-from mdr_core.history.saved_state import SETS
+from mdr_core.history.load_path import SETS, SampledPath
 from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.profiles import Profile

@@ -12,11 +12,10 @@ from mdr_core import conditioning, normal, validity
 from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.elementwise import number
 from mdr_core.errors import InputError, Notice
-from mdr_core.history import load_path, nonlinear_steps, saved_state, slip_memory
+from mdr_core.history import load_path, nonlinear_steps, slip_memory
 from mdr_core.history.contact_state import ContactState, unloaded
-from mdr_core.history.load_path import SampledPath
+from mdr_core.history.load_path import UNLOADED, SampledPath, SavedState
 from mdr_core.history.nonlinear_steps import ExtrapolatedResults
-from mdr_core.history.saved_state import UNLOADED, SavedState
 from mdr_core.history.slip_memory import Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.materials import Material
@@ -160,12 +159,12 @@ class LoadHistory(validity.ContactResults):
         else:
             lines, arcs = [self.results.last], None
         return SavedState(
-            self.path.begin.contact,
+            load_path.digest(self.path.start, self.path.normal_name, self.path.tangential_name),
             float(self.path.normal[-1]),
             float(self.path.tangential[-1]),
             float(self.dissipated_energy[-1]),
             str(self.regime[-1]),
-            [saved_state.saved(each, arcs) for each in lines],
+            [load_path.saved(each, arcs) for each in lines],
         )._asdict()
 
     def _over_depths(self, span: Array, line: Polyline) -> Polyline:
@@ -297,10 +296,9 @@ def solve(
     }
     pressed = only_one(("history", "normal"), normal_load)
     pushed = only_one(("history", "tangential"), tangential_load)
-    moduli = start.e_star, start.g_star, float(friction_coefficient)
-    contact = saved_state.digest(profile, *map(float, moduli), pressed[0], pushed[0])
-    begin = UNLOADED._replace(contact=contact)
+    begin = UNLOADED
     if initial_state is not None:
+        contact = load_path.digest(start, pressed[0], pushed[0])
         begin = SavedState.parsed(initial_state, contact)
         if pressed[0] == "normal_force" and begin.normal < 0:
             raise InputError(_BEGIN, not_negative("normal_force"))
