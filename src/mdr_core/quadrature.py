@@ -37,13 +37,7 @@ def gauss_legendre(points: int) -> tuple[Array, Array]:
     return nodes, weights
 
 
-def integrate(
-    h: Integrand,
-    length: Array,
-    lower: Array | None = None,
-    *,
-    growth: float = STEEP,
-) -> Array:
+def integrate(h: Integrand, length: Array, lower: Array, *, growth: float = STEEP) -> Array:
     """Return the integrals of h over [lower, lower + length], h analytic in the strip.
 
     Source: notes, §5; trefethen, Thm 19.3.
@@ -52,7 +46,7 @@ def integrate(
     ----------
     h : integrand.
     length : lengths, accurate also where the ends are close, shape (m,).
-    lower : lower ends, shape (m,); None for zero.
+    lower : lower ends, shape (m,).
     growth : power of exp|Re y| that h resembles over part of the interval.
     """
     piece = PIECE / max(growth / STEEP, 1.0)
@@ -61,8 +55,7 @@ def integrate(
     result: Array | None = None
     for count in np.flatnonzero(np.bincount(counts)).tolist():
         index = (counts == count).nonzero()[0]
-        start = None if lower is None else lower[index]
-        part = _apply(h, composite_rule(NODES, count), start, length[index], index)
+        part = _apply(h, composite_rule(NODES, count), lower[index], length[index], index)
         if result is None:
             result = np.empty((*part.shape[:-1], length.size))
         result[..., index] = part
@@ -70,20 +63,14 @@ def integrate(
 
 
 def _apply(
-    h: Integrand, rule: tuple[Array, Array], lower: Array | None, length: Array, index: Indices
+    h: Integrand, rule: tuple[Array, Array], lower: Array, length: Array, index: Indices
 ) -> Array:
     """Rule on [0, 1] applied to [lower, lower + length], in blocks that stay in the cache."""
     nodes, weights = rule
     if len(several := in_blocks(length.size, nodes.size)) > 1:
-        results = []
-        for part in several:
-            low = None if lower is None else lower[part]
-            results.append(_apply(h, rule, low, length[part], index[part]))
-        return np.concatenate(results, axis=-1)
-    y = nodes[:, None] * length
-    if lower is not None:
-        y += lower
-    return np.asarray(weights @ h(y, index) * length)
+        parts = [_apply(h, rule, lower[part], length[part], index[part]) for part in several]
+        return np.concatenate(parts, axis=-1)
+    return np.asarray(weights @ h(lower + nodes[:, None] * length, index) * length)
 
 
 @lru_cache(maxsize=256)

@@ -95,7 +95,7 @@ def two_root_integral(
     roots = np.sqrt(outer2) * np.where(root > 0, lower, epsilon) + root * upper
     covered2 = np.where(root > 0, width * (upper + lower), outer2)
     length = np.arcsinh(covered2 / np.maximum(roots, TINY))
-    start = np.arcsinh(np.minimum(root, lower) / epsilon) if some(lower > 0) else None
+    start = np.arcsinh(np.minimum(root, lower) / epsilon)
 
     def h(y: Array, index: Indices) -> Array:
         # s^2 = |r^2 - b^2| cosh^2 y above the break, |r^2 - b^2| sinh^2 y below it.

@@ -107,7 +107,7 @@ class Spheroid(Profile):
             return np.log1p(2 * (z2 + q)) / (2 * q)
 
         top = inverse_hypot(a, r) / np.sqrt(rest_a)
-        length, start = np.arcsinh(top), None
+        length, start = np.arcsinh(top), np.zeros(r.shape)
         if some(c > 0):
             low = np.maximum(c, r)
             rest_c = (big - low) * (big + low)
