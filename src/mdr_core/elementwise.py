@@ -1,4 +1,4 @@
-"""Choices between formulas and sums over nodes, element by element.
+"""Choices between formulas and sums over nodes, element by element, in blocks.
 
 A single load is carried as `np.float64`, not as an array without dimension, on which every
 operation takes ten times as long. The same formulas serve both; these functions evaluate only the
@@ -15,6 +15,8 @@ from mdr_core.typing import Array, Parameter
 # Types of single numbers and flags; NumPy's doubles are floats as well.
 _NUMBERS: Final = (float, int)
 _FLAGS: Final = (np.bool_, bool)
+# Values evaluated at once: arrays above 128 kB, here of complex numbers, are mapped each time.
+_AT_ONCE: Final = 8_192
 
 
 def number(value: Parameter) -> Any:
@@ -94,3 +96,9 @@ def in_order(weights: Array, values: Array) -> Array:
     terms = np.multiply(spread, values, order="C")
     # NumPy adds numbers that are contiguous in pairs, rows in their order.
     return np.add.accumulate(terms)[-1] if terms[0].size == 1 else np.add.reduce(terms)
+
+
+def in_blocks(count: int, values: int = 1) -> list[slice]:
+    """Return slices of `count` rows of so many values each, whose arrays stay in the cache."""
+    step = max(_AT_ONCE // values, 1)
+    return [slice(start, start + step) for start in range(0, count, step)]

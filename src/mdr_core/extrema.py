@@ -9,8 +9,8 @@ import numpy as np
 from scipy.interpolate import BPoly
 
 from mdr_core.abel.annulus import Annulus, whole
-from mdr_core.doubles import ADJACENT, in_blocks
-from mdr_core.elementwise import full, is_number, some, where
+from mdr_core.doubles import ADJACENT
+from mdr_core.elementwise import full, in_blocks, is_number, some, where
 from mdr_core.inversion import MAX_STEPS
 from mdr_core.profiles import Paraboloid, Profile, RoundedPunch
 from mdr_core.typing import Array, Flags, Indices

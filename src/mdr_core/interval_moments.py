@@ -17,8 +17,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from mdr_core.doubles import EPS, in_blocks
-from mdr_core.elementwise import in_order, some, where
+from mdr_core.doubles import EPS
+from mdr_core.elementwise import in_blocks, in_order, some, where
 from mdr_core.equivalent_1d import break_below, depth_step, force_step, has_many_breaks
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile

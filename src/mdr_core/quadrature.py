@@ -14,7 +14,8 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.special import roots_legendre
 
-from mdr_core.doubles import EPS, LOG_RANGE, in_blocks
+from mdr_core.doubles import EPS, LOG_RANGE
+from mdr_core.elementwise import in_blocks
 from mdr_core.typing import Array, Indices
 
 # h(y, index): y has shape (nodes, m) and may be overwritten; index (m,) selects the integrals. The

@@ -13,7 +13,7 @@ from unittest.mock import patch
 import numpy as np
 
 from mdr_core import fields, normal, quadrature, tangential
-from mdr_core.doubles import in_blocks
+from mdr_core.elementwise import in_blocks
 from mdr_core.profiles import KINDS, PowerTerm
 
 if TYPE_CHECKING:

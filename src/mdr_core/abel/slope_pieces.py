@@ -19,7 +19,8 @@ from scipy.interpolate import PPoly
 
 from mdr_core.abel.annulus import Annulus, log_ratio
 from mdr_core.abel.displacement import Kernel, arccosine
-from mdr_core.doubles import EPS, in_blocks
+from mdr_core.doubles import EPS
+from mdr_core.elementwise import in_blocks
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array
 

@@ -17,7 +17,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from mdr_core.doubles import ROUNDING, in_blocks
+from mdr_core.doubles import ROUNDING
+from mdr_core.elementwise import in_blocks
 from mdr_core.history import slip_memory
 from mdr_core.history.friction_work import dissipation
 from mdr_core.history.slip_memory import LoadPoints, Polyline, VertexTree

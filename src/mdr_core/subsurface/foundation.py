@@ -19,7 +19,8 @@ from numpy.polynomial import legendre
 
 from mdr_core import tangential
 from mdr_core.abel.displacement import Branch
-from mdr_core.doubles import EPS, LARGEST, in_blocks
+from mdr_core.doubles import EPS, LARGEST
+from mdr_core.elementwise import in_blocks
 from mdr_core.errors import InputError
 from mdr_core.fields.tangential import Traction, tractions
 from mdr_core.history import ContactState

@@ -6,7 +6,7 @@ from math import inf
 import numpy as np
 
 from mdr_core.abel.annulus import whole
-from mdr_core.doubles import in_blocks
+from mdr_core.elementwise import in_blocks
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.wear.limiting_stick import LimitingStick
 from mdr_core.wear.worn_annulus import angle

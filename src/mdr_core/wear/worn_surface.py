@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import fields, normal
 from mdr_core.abel.annulus import inverse_hypot
-from mdr_core.doubles import in_blocks
+from mdr_core.elementwise import in_blocks
 from mdr_core.typing import Array
 from mdr_core.validation import checked_radii
 from mdr_core.wear.annulus_state import AnnulusState
