@@ -75,9 +75,10 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
 
 def off_axis(r: Array, f: Array) -> str:
     """Return what to do with positions of a scan that are not measured from the axis, else ""."""
-    bend, slope, _ = np.polyfit(r, f, 2)
-    axis = -slope / (2 * bend) if bend else 0.0
-    if not r.min() < axis < r.max() or abs(axis) < _OFF_AXIS * np.abs(r).max():
+    end = np.abs(r).max()
+    bend, slope, _ = np.linalg.lstsq(np.vander(r / end, 3), f)[0]
+    axis = -end * slope / (2 * bend) if bend else 0.0
+    if not r.min() < axis < r.max() or abs(axis) < _OFF_AXIS * end:
         return ""
     reverse = "" if bend > 0 else ", and reverse the sign of the heights"
     return f"if r is the position on a scan, subtract that of the axis, near {axis:.4g}{reverse}"

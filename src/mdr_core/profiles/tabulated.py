@@ -7,7 +7,7 @@ from typing import ClassVar, Final, Self
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
-from scipy.interpolate import make_interp_spline
+from scipy.interpolate import BPoly, PPoly, make_interp_spline
 
 from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch, Kernel, arccosine, arcsine
@@ -19,18 +19,14 @@ from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.table_fit import fit_table
 from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
-from mdr_core.quadrature import composite_rule
+from mdr_core.quadrature import NODES, composite_rule
 from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import as_numbers, require_finite
 
 # Bound on the error of the sums over the pieces: several times the largest in the tests.
 _ROUNDING: Final = 2e-13
-# The increase of g'(x)/x is found at some points of each piece, and may be larger between them.
-_SAMPLES, _MARGIN = 8, 1.5
 # Deviation that is within a standard uncertainty.
 _MET: Final = 1.1
-# Gauss-Legendre nodes of a piece: exact for the product of its polynomials.
-_NODES: Final = 16
 # Number of times that the last radius is halved towards the axis, so that 1/x is smooth on a piece.
 _HALVES: Final = 40
 # Nodes and weights of a mean over the angles, in which g(r sin t) is smooth.
@@ -283,7 +279,7 @@ class Tabulated(Profile):
         base = np.append(0.0, self._breaks)[np.searchsorted(self._breaks, low, side="right")]
         # s = sqrt(x^2 - b^2) removes the root of g' at the break below.
         first, last = inverse_hypot(low, base), inverse_hypot(high, base)
-        nodes, weights = (part[:, None] for part in composite_rule(_NODES))
+        nodes, weights = (part[:, None] for part in composite_rule(NODES))
         s = first + (last - first) * nodes
         x = np.maximum(np.hypot(base, s), TINY)
         slope = self.depth_slope_beyond(x, base, s * s / (x + base)) * s / x
@@ -362,20 +358,31 @@ class Tabulated(Profile):
         piece = self.fit.edges[1:-1].searchsorted(coordinate, side="right")
         height = self._spline.slope(coordinate) / np.where(coordinate > 0, coordinate, 1.0)
         next_to_axis, beyond = self._increase
+        # Where h' > 0 on the axis, the pressure rises by no more than this rounding error.
+        next_to_axis *= -np.log(_ROUNDING) / 2
         rise = next_to_axis * coordinate + beyond[piece] * np.square(coordinate)
-        return (coordinate < first) & (height > 0) & (_MARGIN * rise <= height)
+        return (coordinate < first) & (height > 0) & (rise <= height)
 
     @cached_property
     def _increase(self) -> tuple[float, Array]:
-        """Largest h' on the first piece, and largest h'/x beyond it up to each piece, >= 0."""
-        edges = self.fit.edges
-        length, share = np.diff(edges), (np.arange(_SAMPLES) + 0.5) / _SAMPLES
-        x = edges[:-1, None] + length[:, None] * share
-        h = self._spline.slope(x) / x
-        steps = np.diff(h, axis=1) / np.diff(x, axis=1)
-        beyond = np.maximum(steps / x[:, :-1], 0.0).max(axis=1)
-        beyond[0] = 0.0
-        return max(float(steps[0].max()), 0.0), np.maximum.accumulate(beyond)
+        """Bounds on h' on the first piece, and on h'/x beyond it up to each piece, >= 0.
+
+        A polynomial is at most another of which no coefficient in Bernstein's form is less.
+        """
+        edges, rows = self.fit.edges, self.fit.rows
+        power, low = np.arange(len(rows))[:, None], edges[:-1]
+
+        def bernstein(polynomial: Array) -> Array:
+            return np.asarray(BPoly.from_power_basis(PPoly(polynomial[::-1], edges)).c)
+
+        # x^2 h' = x g'' - g', against x^3.
+        rise = (power - 1) * rows
+        first = float(bernstein(rise[2:])[:, 0].max())
+        rise[:-1] += low * (power * rows)[1:]
+        cube = np.zeros_like(rows)
+        cube[:4] = low**3, 3 * low**2, 3 * low, np.ones_like(low)
+        beyond = (bernstein(rise)[:, 1:] / bernstein(cube)[:, 1:]).max(axis=0)
+        return max(first, 0.0), np.maximum.accumulate(np.append(0.0, beyond))
 
     def axis_stress(self, coordinate: Array) -> Array:
         stress = self._integral(np.reciprocal, coordinate) / np.pi
