@@ -22,11 +22,9 @@ from mdr_core.elementwise import in_blocks, in_order, some, where
 from mdr_core.equivalent_1d import break_below, depth_step, force_step, has_many_breaks
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
-from mdr_core.quadrature import cumulative_rule
+from mdr_core.quadrature import NODES, cumulative_rule
 from mdr_core.typing import Array, Flags, Indices
 
-# Gauss nodes on an interval without a break, see notes, §10.
-_POINTS: Final = 16
 # An interval is wide if the normal coordinate grows on it by more than the first factor, or the
 # contact radius, or the distance from a pole of the slope, by more than the second, beyond a break
 # the radius by the third. Differences of closed forms over a wide interval hardly suffer
@@ -95,7 +93,7 @@ class IntervalMoments:
             closed = self.profile.interval_moments(span, ends, over_forces=self.over_forces)
         if closed is not None:
             return Moments(span, np.where(span > 0, closed, 0.0))
-        if len(several := in_blocks(low.size, _POINTS)) > 1:
+        if len(several := in_blocks(low.size, NODES)) > 1:
             parts = [self._part(at).over(low[at], span[at], ends[:, at]) for at in several]
             return Moments(span, np.concatenate([part.weights for part in parts], axis=1))
         base, _ = break_below(self.profile, ends[1])
@@ -225,7 +223,7 @@ class IntervalMoments:
         profile, (start, stop) = self.profile, ends
         # The moments do not depend on the width itself, which may be below rounding error.
         width = np.maximum(stop - start, EPS * stop)
-        share, weights, cumulative = cumulative_rule(_POINTS)
+        share, weights, cumulative = cumulative_rule(NODES)
         high, bottom = np.sqrt(stop - base), np.sqrt(np.maximum(start - base, 0.0))
         climb = width / np.where(high > 0, high + bottom, inf)
         root = bottom + climb * share
