@@ -149,7 +149,7 @@ def _step(
     """Difference function(a) - function(c), by the integral of the slope in a narrow annulus."""
     high, width, low = ends if is_number(sum(ends)) else np.broadcast_arrays(*ends)
     below, before = break_below(profile, high)
-    limit = (high - before) / 2 if has_many_breaks(profile) else NARROW * high
+    limit = np.minimum(NARROW * high, (high - before) / 2)
     if profile.steepens:
         # A steep load is not smooth over as much of the radius.
         rate = slope(high, below, high - below)
@@ -198,16 +198,12 @@ def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Arra
 def break_below(profile: Profile, high: Array) -> tuple[Array, Array]:
     """Return the nearest break below each coordinate and the one before it; zero for none."""
     breaks = profile.coordinate_breaks
-    if has_many_breaks(profile):
-        padded = np.concatenate([[0.0, 0.0], breaks])
-        index = np.maximum(np.searchsorted(padded, high, side="left") - 1, 1)
-        return padded[index], padded[index - 1]
-    nothing = full(0.0, high)
-    if not breaks.size:
-        return nothing, nothing
-    # Every case of a sweep has its own break.
-    own = breaks if profile.swept else breaks[0]
-    return where(high > own, own, 0.0), nothing
+    if profile.swept and breaks.size:
+        # Every case of a sweep has its own break.
+        return where(high > breaks, breaks, 0.0), full(0.0, high)
+    padded = np.concatenate([[0.0, 0.0], breaks])
+    index = np.maximum(np.searchsorted(padded, high, side="left") - 1, 1)
+    return padded[index], padded[index - 1]
 
 
 def has_many_breaks(profile: Profile) -> bool:
