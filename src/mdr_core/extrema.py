@@ -22,9 +22,8 @@ _Field = Callable[[Indices, Array], Array]
 # Samples between two singular radii, clustered at both. The pressure under the power r^100 has the
 # narrowest smooth peak, next to the contact edge: four samples lie above half its height.
 _SAMPLES: Final = 64
-# Samples in each interval of a table, whose interpolation may have a peak in every one.
-_FEWEST: Final = 6
-# Points across the bracket of a peak, in parts of it.
+# Points across the bracket of a peak, in parts of it. Each interval of a table, whose interpolation
+# may have a peak in every one, is sampled as finely.
 _NINE: Final = np.linspace(0.0, 1.0, 9)
 # Size of log(s/b) up to which one curve of Bernstein polynomials serves all rounded punches, whose
 # contacts are similar; number and degree of the polynomials, which leave 2e-14.
@@ -148,7 +147,7 @@ def _search(profile: Profile, edge: Array, *slip: Array, rim: Array | None = Non
 
     best = np.zeros(edge.size)
     fixed = np.append(0.0, profile.coordinate_breaks)
-    count = max(_SAMPLES // max(fixed.size - 1, 1), _FEWEST)
+    count = max(_SAMPLES // max(fixed.size - 1, 1), _NINE.size - 1)
     for block in in_blocks(edge.size, fixed.size * count):
         load = np.arange(edge.size)[block]
         same = np.broadcast_to(fixed, (load.size, fixed.size))
