@@ -14,7 +14,7 @@ from typing import Any, Final, cast
 
 import h11
 import orjson
-from h11._connection import DEFAULT_MAX_INCOMPLETE_EVENT_SIZE
+from h11._connection import DEFAULT_MAX_INCOMPLETE_EVENT_SIZE as MAX_HEADER_BYTES
 from uvicorn.config import Config
 from uvicorn.protocols.http.flow_control import HIGH_WATER_LIMIT
 from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
@@ -24,8 +24,6 @@ from mdr_service import observability, problems
 from mdr_service.problems import ProblemType, ServiceError
 from mdr_service.settings import SETTINGS
 
-MAX_HEADER_BYTES: Final = DEFAULT_MAX_INCOMPLETE_EVENT_SIZE
-"""Maximum length of request line and headers, that of h11."""
 LINGER_SECONDS: Final = 1.0
 """Time for a rejected client to finish sending and read the response."""
 # Start of the client's own text in a message of h11.

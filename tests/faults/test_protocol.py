@@ -14,11 +14,12 @@ from itertools import pairwise
 import pytest
 import uvicorn
 from fastapi import FastAPI
+from h11._connection import DEFAULT_MAX_INCOMPLETE_EVENT_SIZE as MAX_HEADER_BYTES
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from mdr_service import observability, protocol
 from mdr_service.app import create_app
-from mdr_service.protocol import MAX_HEADER_BYTES, BoundedProtocol
+from mdr_service.protocol import BoundedProtocol
 from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.settings import SETTINGS
 from tests.faults.server import PATIENCE, free_port, wait_until_ready
