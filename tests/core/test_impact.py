@@ -158,9 +158,10 @@ def test_change_of_units(unit: float) -> None:
     masses = {"normal_mass": 2.0, "tangential_mass": 0.6}
     hit = solved(punch, v, w, **masses)
     other = solved(large, unit * v, unit * w, **{k: unit * m for k, m in masses.items()})
+    bound = 1e-10 * unit * w.min()
     for name in ("normal_rebound_velocity", "tangential_rebound_velocity"):
         expected = unit * getattr(hit, name)
-        assert getattr(other, name) == pytest.approx(expected, rel=1e-10, abs=0), name
+        assert getattr(other, name) == pytest.approx(expected, rel=0, abs=bound), name
     assert other.duration == pytest.approx(hit.duration, rel=1e-10, abs=0)
     assert other.dissipated_energy == pytest.approx(
         unit**3 * hit.dissipated_energy, rel=1e-8, abs=0
