@@ -93,9 +93,10 @@ def test_sharp_tips(name: str, bound: float) -> None:
         assert p == pytest.approx(expected, rel=1e-10, abs=0)
 
 
-def test_exact_paraboloid_is_exact() -> None:
+@pytest.mark.parametrize("count", [3, 4, 6])
+def test_exact_paraboloid_is_exact(count: int) -> None:
     """g' = 2x/R is among the splines: everything of the contact is Hertz's."""
-    r = np.array([0.0, 0.1, 0.35, 0.5, 0.8, 1.0])
+    r = np.array([0.0, 0.5, 1.0, 0.1, 0.35, 0.8])[:count]
     contact = solve(Tabulated(r, r * r / 2), 1.0, contact_radius=[0.05, 0.3, 0.77])
     hertz = solve(Paraboloid(1.0), 1.0, contact_radius=[0.05, 0.3, 0.77])
     for name in ("indentation_depth", "normal_force", "maximum_pressure", "elastic_energy"):

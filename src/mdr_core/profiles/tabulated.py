@@ -369,7 +369,8 @@ class Tabulated(Profile):
 
         A polynomial is at most another of which no coefficient in Bernstein's form is less.
         """
-        edges, rows = self.fit.edges, self.fit.rows
+        # Few points leave a parabola, which has no cube.
+        edges, rows = self.fit.edges, np.pad(self.fit.rows, ((0, 1), (0, 0)))
         power, low = np.arange(len(rows))[:, None], edges[:-1]
 
         def bernstein(polynomial: Array) -> Array:
