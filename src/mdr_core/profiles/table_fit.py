@@ -15,7 +15,7 @@ import numpy as np
 from scipy.linalg import qr_multiply, solve_triangular
 from scipy.optimize import nnls
 
-from mdr_core.doubles import EPS
+from mdr_core.doubles import ADJACENT, EPS
 from mdr_core.errors import InputError
 from mdr_core.profiles.table_basis import TableBasis, TableFit, root_mean_square
 from mdr_core.profiles.table_points import ROUNDED, TablePoints, cleaned, off_axis, scatter
@@ -35,8 +35,6 @@ _PLAUSIBLE: Final = 2.0
 _SHARPER, _SHARPER_MEASURED = 100.0, 12.0
 # Lowest g'/x, over that of the paraboloid through the last point: g increases strictly.
 _FLOOR: Final = 1e-9
-# Rounding error of heights over their range, and of a flat that is met.
-_EXACT: Final = 1e-15
 # Deviation from the points, root mean square over the height, from which the shape has no contact
 # area that is a single disc.
 _NO_DISC: Final = 0.025
@@ -99,7 +97,7 @@ def _nearest(points: TablePoints, uncertainty: float | None) -> TableFit:
     if uncertainty == 0:
         # A flat that is met is flat up to rounding errors, and what is smooth has no jumps.
         flat = np.abs(splines) < _FLOOR
-        splines[flat] = (_EXACT * basis.places[1:])[flat]
+        splines[flat] = (ADJACENT * basis.places[1:])[flat]
         jumps[np.abs(jumps) < _FLOOR] = floor = 0.0
         coefficients[-1] *= abs(coefficients[-1]) > ROUNDED
     # Where the slope falls by a step, g' is infinite and negative beyond it.
@@ -208,7 +206,7 @@ class _Spectrum:
             score = np.where(left_over > 0, count * misfit / np.square(left_over), np.inf)
         at = best = int(np.argmin(score))
         if uncertainty is not None:
-            allowed = np.maximum(count - freedom, 1.0) * max(uncertainty, _EXACT) ** 2
+            allowed = np.maximum(count - freedom, 1.0) * max(uncertainty, ADJACENT) ** 2
             within = np.append(0, np.flatnonzero(misfit <= allowed))
             at = min(int(within[-1]), best if uncertainty else weights.size)
         whole = left_out @ np.square(part) + rest
@@ -219,7 +217,7 @@ class _Spectrum:
         likely = best if uncertainty == 0 else at
         # Of noise and roughness together. Source: wahba.
         scatter = float(np.sqrt(whole[likely] / max(count - fitted.size, 1)))
-        self.sigma = max(uncertainty or scatter, _EXACT)
+        self.sigma = max(uncertainty or scatter, ADJACENT)
         # The points hardly tell the best weight from a smaller one, which leaves more open.
         plausible = min(likely, int(np.argmax(score <= score.min() * (1 + _PLAUSIBLE / count))))
         self.spread = np.hstack([smooth, rough / np.sqrt(size2 + weights[plausible])])

@@ -13,6 +13,7 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core.doubles import ROUNDING
 from mdr_core.errors import InputError
 from mdr_core.typing import Array
 
@@ -22,9 +23,9 @@ ROUNDED: Final = 1e-8
 _SAME: Final = 1e-2
 # Neighbours on each side from which a height is predicted.
 _NEIGHBOURS: Final = 3
-# Rounded numbers: largest unit over the step between neighbours, error of a multiple over the
-# largest number, and largest number of units: a smaller one is below `ROUNDED`.
-_FINEST_STEP, _EQUAL, _MOST_UNITS = 0.05, 1e-14, round(1 / (np.sqrt(12) * ROUNDED))
+# Rounded numbers: largest unit over the step between neighbours, and largest number of units: a
+# smaller one is below `ROUNDED`.
+_FINEST_STEP, _MOST_UNITS = 0.05, round(1 / (np.sqrt(12) * ROUNDED))
 # Smallest error of a rounded height, over that of most.
 _LEAST_ERROR: Final = 1e-2
 # Distance of a scan's axis from r = 0 that is reported, over the last radius.
@@ -120,7 +121,7 @@ def _common_unit(values: Array) -> float:
         parts = count * values
         off = np.abs(parts - parts.round())
         worst = int(np.argmax(off))
-        if off[worst] <= _EQUAL * count:
+        if off[worst] <= ROUNDING * count:
             return 1 / count
         part = Fraction(float(parts[worst])).limit_denominator(_MOST_UNITS // count)
         count *= max(part.denominator, 2)
