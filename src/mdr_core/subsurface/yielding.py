@@ -31,8 +31,6 @@ _RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 3, 1e-4, 2.0
 _ANGLES: Final = np.linspace(0, np.pi / 2, 4)
 # Points across a box around a peak, which at first reaches to the next points of the grid.
 _ACROSS: Final = np.linspace(-1, 1, 5)
-# Factor by which a box shrinks.
-_SHRINK: Final = 0.3
 # Part of the stress by which it varies in the last box, distance from a singular force, and square
 # of the step of the secant after which the next is negligible.
 _RTOL: Final = 1e-6
@@ -316,16 +314,16 @@ def _climbed(
     """Return the highest of the peaks next to some places, and its own place.
 
     A box around each place moves to its highest point. In each direction it grows if that lies on
-    its boundary and shrinks if it is the middle, so that it takes the shape of the peak, however
-    narrow. The peak is taken to rise above the middle no more than the middle above the lowest
-    point: a box that stays below the highest peak, or the limit, is left.
+    its boundary and shrinks to the next points if it is the middle, so that it takes the shape of
+    the peak, however narrow. The peak is taken to rise above the middle no more than the middle
+    above the lowest point: a box that stays below the highest peak, or the limit, is left.
 
     Parameters
     ----------
     on, limit : see `_peak`.
     place, box : angle, r and z of each start, and half the sizes of its box, shape (n, 3).
     """
-    half, highest, top = box, 0.0, place[0]
+    half, highest, top, shrink = box, 0.0, place[0], _ACROSS[_ACROSS.size // 2 + 1]
     for _ in range(MAX_STEPS):
         axes = place[..., None] + half[..., None] * _ACROSS
         axes[:, 2] = np.abs(axes[:, 2])
@@ -344,7 +342,7 @@ def _climbed(
         left = (rise > _RTOL * value) & (needed | (reach == 1).any(axis=1))
         if not left.any() or (limit is not None and highest >= limit):
             break
-        half = half * np.where(reach == 1, 1 / _SHRINK, np.where(reach == 0, _SHRINK, 1.0))
+        half = half * np.where(reach == 1, 1 / shrink, np.where(reach == 0, shrink, 1.0))
         half[:, 0] = np.minimum(half[:, 0], box[:, 0])
         place, half, box = place[left], half[left], box[left]
     return highest, top
