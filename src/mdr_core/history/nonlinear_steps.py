@@ -27,8 +27,6 @@ from mdr_core.typing import Array, Indices
 # Chords of the coarsest set from the axis to the larger end of an arc: those of all sets take 1 to
 # 8 ms per step, or 20 to 50 ms on tables of 200 points.
 _CHORDS: Final = 256
-# The least on a nonlinear load step.
-_FEWEST: Final = 8
 # The most on all steps together, which bounds time and memory.
 _MOST: Final = 100_000
 # The error of the extrapolated results, in units of the change by the last halving.
@@ -104,9 +102,9 @@ class NonlinearSteps:
         Up to `_MOST` they do not depend on other load steps: a path has those of its pieces.
         """
         owner, start, stop = self._parts
-        travel = np.abs(stop - start) / self.larger[owner]
-        needed = np.maximum(_CHORDS * travel, _FEWEST)
-        count = np.ceil(needed * min(_MOST / needed.sum(), 1.0)).astype(int) << halvings
+        needed = _CHORDS * np.abs(stop - start) / self.larger[owner]
+        shared = np.ceil(needed / max(needed.sum() / _MOST, 1.0)).astype(int)
+        count = np.maximum(shared, 1) << halvings
         count[self.rate[owner] == 0] = 1
         part, last = np.repeat(np.arange(count.size), count), np.cumsum(count) - 1
         share = (np.arange(part.size) - np.append(-1, last[:-1])[part]) / count[part]

@@ -12,10 +12,12 @@ In the units of `mdr_core.wear.initial_state`. Source: notes, §11.
 """
 
 from functools import cached_property
+from math import sqrt
 from typing import Final
 
 import numpy as np
 
+from mdr_core.doubles import EPS
 from mdr_core.errors import AccuracyError
 from mdr_core.typing import Array
 from mdr_core.wear.annulus_state import AnnulusState
@@ -23,8 +25,6 @@ from mdr_core.wear.initial_state import InitialState
 
 # Columns of a rate: by wear alone, and per unit of the rates of b, c and w_c, or d.
 _WEAR, _END, _STICK, _RETAINED = range(4)
-# Step of a difference quotient, about the root of the rounding error.
-_STEP: Final = 1e-7
 # Rate at which the integrator's errors of gamma(a) - D, and of the force in full slip, decay: fast
 # beside the wear, whose unit is 1, and slow beside the steps of the first cycles.
 _RETURN: Final = 10.0
@@ -53,7 +53,8 @@ def jacobian(initial: InitialState, vector: Array) -> Array:
         found[:, tilted:] = np.multiply.outer(gradient[:, -1], state.tilt_basis[0] / state.end)
     found[:, :inner] = gradient[:, :-1]
     for edge in state.moving:
-        step, at = _STEP * (state.offset[-1] if edge == _STICK else 1.0), inner + edge - _END
+        # The root of the rounding error suits a difference quotient.
+        step, at = sqrt(EPS) * (state.offset[-1] if edge == _STICK else 1.0), inner + edge - _END
         moved = vector.copy()
         moved[at] += step
         found[:, at] = (rates(initial, moved) - state.rates) / step
