@@ -13,7 +13,7 @@ from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch, Kernel, arccosine, arcsine
 from mdr_core.abel.slope_pieces import SlopePieces
 from mdr_core.abel.stress import stress_integral
-from mdr_core.doubles import TINY
+from mdr_core.doubles import EPS, TINY
 from mdr_core.elementwise import in_order, some, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
@@ -27,8 +27,6 @@ from mdr_core.validation import as_numbers, require_finite
 _ROUNDING: Final = 2e-13
 # Deviation that is within a standard uncertainty.
 _MET: Final = 1.1
-# Number of times that the last radius is halved towards the axis, so that 1/x is smooth on a piece.
-_HALVES: Final = 40
 # Nodes and weights of a mean over the angles, in which g(r sin t) is smooth.
 _ANGLES, _SHARES = composite_rule(16, 8)
 # Points of a tip from the coefficients of its area function.
@@ -272,7 +270,8 @@ class Tabulated(Profile):
 
     def _integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
         """int_0^a density(x) g'(x) dx, by Gauss's rule on each piece."""
-        a, halves = np.ravel(coordinate), self._end / 2.0 ** np.arange(1, _HALVES)
+        # Halves of the last radius, so that 1/x is smooth on a piece.
+        a, halves = np.ravel(coordinate), self._end / 2.0 ** np.arange(1, -np.log2(EPS))
         edges = np.union1d(self._edges, halves)
         piece = edges[1:-1].searchsorted(a, side="right")
         low, high = np.append(edges[:-1], edges[piece]), np.append(edges[1:], a)
