@@ -78,7 +78,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     checked(query, values, infinite)
     method = _method(source, contact, query.quantities)
     # The error of the edges adds to that of the integrals.
-    integrated = 0.0 if method == "closed_form" else max(query.rtol / 2, TIGHTEST)
+    integrated = 0.0 if method == "closed_form" else TIGHTEST
     at_edges = max(
         fields.edge_error(contact if name == "pressure" else partial or contact, name, radius)
         for name in query.quantities
