@@ -477,6 +477,13 @@ def test_data_error_beyond_a_declared_break(name: str) -> None:
     assert max(estimates) <= 10 * max(errors)
 
 
+def test_few_points_of_a_flat_with_a_sharp_edge_are_accepted() -> None:
+    r, a = np.append(np.arange(8) / 7, 0.3935), 0.9
+    contact = solve(Tabulated(r, np.maximum(r - r[-1], 0.0)), 1.0, contact_radius=a)
+    error = float(contact.indentation_depth) / (a * np.arccos(r[-1] / a)) - 1
+    assert abs(error) <= float(contact.data_error) < 0.2
+
+
 # Refusals.
 
 R = np.linspace(0.0, 1.0, 30)

@@ -81,8 +81,9 @@ class TableBasis:
         self.order = min(_ROUGH, k)
         x = points.x if points.x[0] == 0 else np.append(0.0, points.x)
         knots = x[np.unique(np.linspace(0, x.size - 1, min(x.size, _KNOTS)).round().astype(int))]
-        if knots.size > _DEGREE:
+        if knots.size > 2 * _DEGREE:
             # Points beside which there is no knot, not the roughness, bend the slope at the end.
+            # Few points need all knots: nine beside and beyond a flat would be rejected.
             knots = np.delete(knots, [-3, -5])
         self.points, self.knots = points, knots
         self.t = np.concatenate([[0.0] * k, knots, [1.0] * k])
