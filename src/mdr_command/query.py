@@ -241,7 +241,7 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
     for pointer, detail in error.errors or [("", error.detail)]:
         place = pointer[1:].replace("/", ".")
         parts = ["standard input" if file == _STANDARD_INPUT else file, place, detail]
-        if error.type is problems.MALFORMED_JSON:
+        if error.type == problems.MALFORMED_JSON:
             parts.append(_REQUEST + (_BY_OPTIONS if names else ""))
         elif area and f"{place}.".startswith(("kind.", "profile.")):
             parts = [_option(_AREA_OPTIONS.get(place, "area_coefficients"), _OTHER_OPTIONS), detail]

@@ -120,13 +120,19 @@ def from_validation(error: ValidationError, model: type[BaseModel] | None = None
     return invalid(errors, len(found))
 
 
-def invalid(errors: Sequence[Error], count: int = 1) -> ServiceError:
-    """Return the failure of a request with some of its `count` errors, the first as its detail."""
+def invalid(errors: Sequence[Error], count: int | None = None) -> ServiceError:
+    """Return the failure of a request with its errors, the first as its detail.
+
+    Parameters
+    ----------
+    errors : pointers and reasons.
+    count : number of the errors if some are left out.
+    """
     (where, detail), *_ = errors
     if place := where[1:].replace("/", ".").replace("~1", "/").replace("~0", "~"):
         detail = f"{place}: {detail}"
-    if count > 1:
-        detail += f" (and {count - 1} more)"
+    if others := (count or len(errors)) - 1:
+        detail += f" (and {others} more)"
     return ServiceError(INVALID_REQUEST, detail, errors)
 
 

@@ -125,8 +125,9 @@ class Parameters(Form):
         except problems.FAILURES as error:
             found = problems.to_problem(error)
             errors = [self._error(*each) for each in found.errors]
-            if found.type is problems.INVALID_REQUEST:
-                raise problems.invalid(errors, len(errors)) from None
+            # Equal, but another object if a compute process found it.
+            if found.type == problems.INVALID_REQUEST:
+                raise problems.invalid(errors) from None
             raise replace(found, errors=errors) from None
 
     def _join_range(self, given: dict[str, Any]) -> None:

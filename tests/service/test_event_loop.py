@@ -31,9 +31,11 @@ def test_long_range_is_expanded_in_a_compute_process(
 
 
 def test_errors_of_a_long_range_point_at_parameters(client: Client) -> None:
-    for count in (1000, 2000):
+    for count in ("1000", "2000", "10&format=svg"):
         problem = client.get(f"{FORCES.replace('slope=0.1', 'slope=-1')}&n={count}").json()
         assert [each["pointer"] for each in problem["errors"]] == ["/slope"]
+        assert problem["detail"].startswith("slope: ")
+    for count in (1000, 2000):
         problem = client.get(f"{FORCES}&n={count}&answers=nothing").json()
         assert [each["pointer"] for each in problem["errors"]] == ["/answers"]
 
