@@ -14,7 +14,6 @@ from typing import Any, Final, cast
 
 import h11
 import orjson
-from h11._connection import DEFAULT_MAX_INCOMPLETE_EVENT_SIZE as MAX_HEADER_BYTES
 from uvicorn.config import Config
 from uvicorn.protocols.http.flow_control import HIGH_WATER_LIMIT
 from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
@@ -24,6 +23,8 @@ from mdr_service import observability, problems
 from mdr_service.problems import ProblemType, ServiceError
 from mdr_service.settings import SETTINGS
 
+MAX_HEADER_BYTES: Final = 16_384
+"""Maximum length of request line and headers, by default the one of h11 and of Node.js as well."""
 LINGER_SECONDS: Final = 1.0
 """Time for a rejected client to finish sending and read the response."""
 # Start of the client's own text in a message of h11.
@@ -43,9 +44,11 @@ class BoundedProtocol(H11Protocol):
         app_state: dict[str, Any],
         _loop: AbstractEventLoop | None = None,
     ) -> None:
+        config.h11_max_incomplete_event_size = MAX_HEADER_BYTES
         super().__init__(config, server_state, app_state, _loop)
         self._rejected = False
-        self._arrival = self.loop.call_later(SETTINGS.request_seconds, self._check_arrival)
+        self._await_request()
+        self._arrival = self.loop.call_at(self._due, self._check_arrival)
 
     # uvicorn has the narrower type as well.
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
@@ -54,7 +57,7 @@ class BoundedProtocol(H11Protocol):
         # As much as uvicorn buffers: by default the kernel keeps megabytes of each response.
         link.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, HIGH_WATER_LIMIT)
         if option := getattr(socket, "TCP_USER_TIMEOUT", None):
-            # Of Linux.
+            # Linux only.
             link.setsockopt(socket.IPPROTO_TCP, option, round(1e3 * SETTINGS.request_seconds))
 
     def connection_lost(self, exc: Exception | None) -> None:
@@ -63,19 +66,30 @@ class BoundedProtocol(H11Protocol):
         super().connection_lost(exc)
 
     def _await_request(self) -> None:
-        """Start the time of a request: its first byte is there, or it is the next one."""
-        self._arrival.cancel()
-        self._arrival = self.loop.call_later(SETTINGS.request_seconds, self._check_arrival)
+        """Restart the limit of time: at the first byte of a request, or after a response.
+
+        The next request may have been sent ahead.
+        """
+        self._due = self.loop.time() + SETTINGS.request_seconds
 
     def _check_arrival(self) -> None:
         """Close the connection if its client sends too slowly."""
-        awaited = self.timeout_keep_alive_task is None and (
-            self.conn.their_state in {h11.IDLE, h11.SEND_BODY}
-        )
-        if awaited and not self._rejected and not self.transport.is_closing():
-            in_headers = self.conn.their_state is h11.IDLE
-            slow = problems.HEADERS_TOO_SLOW if in_headers else problems.BODY_TOO_SLOW
-            self._reject(slow, f"a request must arrive within {SETTINGS.request_seconds:g} s")
+        state, kept_alive = self.conn.their_state, self.timeout_keep_alive_task is not None
+        if self.loop.time() >= self._due:
+            if state in {h11.IDLE, h11.SEND_BODY} and not kept_alive and not self._rejected:
+                self._reject_slow(in_headers=state is h11.IDLE)
+                return
+            self._await_request()
+        self._arrival = self.loop.call_at(self._due, self._check_arrival)
+
+    def _reject_slow(self, *, in_headers: bool) -> None:
+        begun = in_headers and self.conn.trailing_data[0]
+        if self.cycle and self.cycle.response_complete and not begun:
+            # The client would take a second response for the one to its next request.
+            self.transport.close()
+            return
+        slow = problems.HEADERS_TOO_SLOW if in_headers else problems.BODY_TOO_SLOW
+        self._reject(slow, f"a request must arrive within {SETTINGS.request_seconds:g} s")
 
     def data_received(self, data: bytes) -> None:
         if self.timeout_keep_alive_task is not None:
@@ -101,8 +115,10 @@ class BoundedProtocol(H11Protocol):
         Raises h11.RemoteProtocolError where the headers are too large, or a proxy in front could
         read another request: RFC 9112, 2.3 and 6.1.
         """
-        size = sum([len(name) + len(value) for name, value in self.headers])
-        if size > MAX_HEADER_BYTES:
+        # As sent: h11 checks only headers that are incomplete when it reads them.
+        target = self.scope["raw_path"], self.scope["query_string"]
+        line = b"%s %s?%s HTTP/1.1" % (self.scope["method"].encode(), *target)
+        if len(b"\r\n".join((line, *map(b": ".join, self.headers), b"", b""))) > MAX_HEADER_BYTES:
             raise h11.RemoteProtocolError("headers are too large", error_status_hint=431)
         names, version = {name for name, _ in self.headers}, self.scope["http_version"]
         if version not in {"1.0", "1.1"}:
@@ -122,7 +138,7 @@ class BoundedProtocol(H11Protocol):
             self._reject(problems.MALFORMED_HTTP, _SENT.sub("", str(error)))
 
     def _reject(self, type_: ProblemType, detail: str) -> None:
-        """Respond with a problem if no response is pending, and close the connection."""
+        """Respond with a problem unless a response has started, and close the connection."""
         self._rejected = True
         observability.PROBLEMS.labels(type_.name).inc()
         if self.cycle and not self.cycle.response_complete:

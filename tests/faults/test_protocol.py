@@ -14,12 +14,11 @@ from itertools import pairwise
 import pytest
 import uvicorn
 from fastapi import FastAPI
-from h11._connection import DEFAULT_MAX_INCOMPLETE_EVENT_SIZE as MAX_HEADER_BYTES
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from mdr_service import observability, protocol
 from mdr_service.app import create_app
-from mdr_service.protocol import BoundedProtocol
+from mdr_service.protocol import MAX_HEADER_BYTES, BoundedProtocol
 from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.settings import SETTINGS
 from tests.faults.server import PATIENCE, free_port, wait_until_ready
@@ -184,8 +183,10 @@ def test_rejected_connection_is_closed_after_the_response(served: Served) -> Non
 
 
 def test_long_url_is_rejected(served: Served) -> None:
-    text = b"GET /%s HTTP/1.1\r\nHost: x\r\n\r\n" % (b"a" * 2 * MAX_HEADER_BYTES)
-    assert served.responses(text)[0][0] == 431
+    for size, status in ((MAX_HEADER_BYTES, 200), (MAX_HEADER_BYTES + 1, 431)):
+        text = GET.replace(b"health", b"health?" + b"a" * (size - len(GET) - 1))
+        for pieces in ([text], [text[:-1], text[-1:]], [text[:9], text[9:]]):
+            assert served.responses(*pieces)[0][0] == status
 
 
 @pytest.mark.parametrize(
@@ -350,10 +351,13 @@ def test_slow_request_is_rejected(served: Served, pieces: list[bytes], name: str
 
 @pytest.mark.alone
 @pytest.mark.usefixtures("short_timeouts")
-def test_early_response_closes_a_connection_with_an_endless_body(served: Served) -> None:
+@pytest.mark.parametrize("rest", [b"a", b"a" * 100], ids=["endless", "late end"])
+def test_nothing_follows_an_early_response(served: Served, rest: bytes) -> None:
     with served.connect() as client:
-        client.sendall(b"POST /nowhere HTTP/1.1\r\nHost: x\r\nContent-Length: 1000000\r\n\r\n")
+        client.sendall(b"POST /nowhere HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\n\r\n")
         assert read(client, 1)[0][0] == 404
+        client.sendall(rest)
+        assert not read(client, 1)
         wait_for(lambda: send_all(client, (b"a",)))
 
 

@@ -73,7 +73,7 @@ class QueryRoute(APIRoute):
         model = BatchQuery if name == "batch" else SCHEMAS[name].model
 
         async def handle(request: Request) -> Response:
-            texts = _url_parameters(request)
+            texts = _url_parameters(request, parameters)
             try:
                 given = parameters.model_validate(texts)
             except ValidationError as error:
@@ -94,10 +94,15 @@ class QueryRoute(APIRoute):
         return handle
 
 
-def _url_parameters(request: Request) -> dict[str, str]:
+def _url_parameters(request: Request, parameters: type[Form]) -> dict[str, str]:
     """Return the parameters of the URL, each of which can be given once."""
-    if not request.scope["query_string"]:
+    text: bytes = request.scope["query_string"]
+    if not text:
         return {}
+    if text.count(b"&") >= len(parameters.model_fields):
+        # Some thousand unknown names would hold the event loop.
+        names = ", ".join(parameters.model_fields)
+        raise problems.invalid([("", f"there are more parameters than may be given: {names}")])
     pairs = request.query_params.multi_items()
     numbers = Counter(name for name, _ in pairs)
     if len(numbers) < len(pairs):
