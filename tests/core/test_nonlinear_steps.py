@@ -103,3 +103,14 @@ def test_estimate_of_a_nonlinear_step_into_full_slip(
         # The straight steps leave an error below 1e-8.
         bound = (found.error_estimate + 1e-8) * np.max(np.abs(expected))
         assert getattr(found, name) == pytest.approx(expected, rel=0, abs=bound)
+
+
+@pytest.mark.parametrize("before", [1, 10_001])
+def test_chords_of_a_short_load_step_do_not_depend_on_straight_ones(before: int) -> None:
+    profile, force, moved = Paraboloid(1.0), np.array([1.0, 1.01]), np.array([0.0, 0.003])
+    loads = np.append(1.0 - 0.1 * (np.arange(before) % 2), 1.01)
+    slid = np.append(np.zeros(before), 0.003)
+    found = history.solve(profile, 1.0, 1.0, MU, normal_force=loads, tangential_displacement=slid)
+    assert found.error_estimate < 1e-5
+    for name, expected in by_straight_steps(profile, force, moved, 4_096).items():
+        assert getattr(found, name)[-1] == pytest.approx(expected[-1], rel=1e-6, abs=0)
