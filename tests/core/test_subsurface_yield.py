@@ -246,6 +246,16 @@ def test_cusp_at_the_edge_of_a_sliding_contact() -> None:
     assert float(peak.x) == pytest.approx(0.6809, rel=1e-6, abs=0)
 
 
+def test_peak_across_the_load_beside_a_flat() -> None:
+    """Along the narrow ring of the edge, ahead of the load, a second peak is 0.3 % lower."""
+    contact = normal.solve(RoundedPunch(1.0, 112.0), 1.0, contact_radius=1 + 1e-5)
+    case = tangential.solve(contact, 0.667, 0.5, stick_radius=0.0)
+    angle, r = np.linspace(1.6, 2.2, 61)[:, None], 1 + 1e-5 * np.linspace(0.8, 0.9, 11)
+    sampled = stress(case, r * np.cos(angle), r * np.sin(angle), 0.0, poissons_ratio=0.3)
+    peak = largest(case, "maximum_shear", poissons_ratio=0.3)
+    assert float(peak.value) == pytest.approx(sampled.maximum_shear.max(), rel=1e-5, abs=0)
+
+
 @pytest.mark.parametrize("profile", [Power(0.4, 1.5), RoundedPunch(0.05, 2.0)])
 def test_onset_is_that_of_any_load_in_its_ratio(profile: Profile) -> None:
     radii = np.array([0.06, 0.1, 0.3])

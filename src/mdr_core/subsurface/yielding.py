@@ -9,6 +9,7 @@ from math import ceil, cos, exp, inf, log, sin, sqrt
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter
 
 from mdr_core import normal, tangential
@@ -26,13 +27,18 @@ from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
 
 # Radii, and depths per e-fold, of a grid. The radii cluster at the axis, the edges and the breaks;
 # the depths lie between these parts of the contact radius.
-_RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 3, 1e-4, 2.0
+_RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 2, 1e-4, 2.0
+# Points of the spline through the grid over those of the grid; part of the highest stress that its
+# peaks reach if they are climbed.
+_FINER, _ALMOST = 4, 0.8
 # Directions of the grid if there is friction: it may lift a peak out of the plane y = 0.
 _ANGLES: Final = np.linspace(0, np.pi / 2, 4)
-# Points across a box around a peak, which at first reaches to the next points of the grid.
-_ACROSS: Final = np.linspace(-1, 1, 5)
-# Part of the stress by which it varies in the last box, distance from a singular force, and square
-# of the step of the secant after which the next is negligible.
+# Points across a box around a peak, and half of the first box in steps of the spline.
+_ACROSS, _STEPS = np.linspace(-1, 1, 5), 3.0
+# Factor by which a box shrinks, and part of the stress by which it varies in the last one.
+_SHRINK, _FLAT = 0.3, 4e-6
+# Distance of the logarithm of a force from that of a singular one, and square of the step of the
+# secant after which the next is negligible.
 _RTOL: Final = 1e-6
 # Contact coordinate over the radius of a flat below which no radius in double precision resolves
 # the stress beneath the edge: at this one it is too low by 5e-6 of its value.
@@ -295,15 +301,25 @@ def _peak(
     values = on(angles[:, None, None], r[:, None], z)
     if limit is not None and values.max() >= limit:
         return (float(values.max()),)
+    # Where two peaks share a ridge the grid may have one maximum, but the spline through it has
+    # both.
+    steps = [np.arange(part.size) for part in (r, z)]
+    finer = [np.linspace(0, part[-1], _FINER * part[-1] + 1) for part in steps]
+    fine = CubicSpline(steps[0], values, axis=1)(finer[0])
+    fine = CubicSpline(steps[1], fine, axis=2)(finer[1])
+    r, z = (np.interp(*columns) for columns in zip(finer, steps, (r, z), strict=True))
     # On the axis the directions differ by rounding errors.
-    values[1:, r == 0] = values[0, r == 0]
-    high = values == maximum_filter(values, 3)
+    fine[1:, r == 0] = fine[0, r == 0]
+    high = (fine == maximum_filter(fine, 3)) & (fine >= _ALMOST * values.max())
     # One direction stands for all on the axis, and for both beside the plane of the load.
     high[1:, r == 0] = high[len(_ANGLES) - 1 :, r < 0] = False
+    # The spline waves beside the cusp at the edge of a sliding contact, and may hide it.
+    at = np.unravel_index(values.argmax(), values.shape)
+    high[at[0], _FINER * at[1], _FINER * at[2]] = True
     k, i, j = np.nonzero(high)
     place = np.stack([angles[k], r[i], z[j]], axis=1)
-    turn = np.full(k.size, _ANGLES[1] * under.sheared)
-    box = np.stack([turn, np.gradient(r)[i], np.gradient(z)[j]], axis=1)
+    turn = np.full(k.size, _ANGLES[1] / _FINER * under.sheared)
+    box = _STEPS * np.stack([turn, np.gradient(r)[i], np.gradient(z)[j]], axis=1)
     value, (angle, radius, depth) = _climbed(on, place, box, limit)
     return value, radius * cos(angle), abs(radius * sin(angle)), depth
 
@@ -314,16 +330,16 @@ def _climbed(
     """Return the highest of the peaks next to some places, and its own place.
 
     A box around each place moves to its highest point. In each direction it grows if that lies on
-    its boundary and shrinks to the next points if it is the middle, so that it takes the shape of
-    the peak, however narrow. The peak is taken to rise above the middle no more than the middle
-    above the lowest point: a box that stays below the highest peak, or the limit, is left.
+    its boundary and shrinks if it is the middle, so that it takes the shape of the peak, however
+    narrow. The peak is taken to rise above the middle no more than the middle above the lowest
+    point: a box that stays below the highest peak, or the limit, is left.
 
     Parameters
     ----------
     on, limit : see `_peak`.
     place, box : angle, r and z of each start, and half the sizes of its box, shape (n, 3).
     """
-    half, highest, top, shrink = box, 0.0, place[0], _ACROSS[_ACROSS.size // 2 + 1]
+    half, highest, top = box, 0.0, place[0]
     for _ in range(MAX_STEPS):
         axes = place[..., None] + half[..., None] * _ACROSS
         axes[:, 2] = np.abs(axes[:, 2])
@@ -339,10 +355,10 @@ def _climbed(
             highest, top = float(value.max()), place[value.argmax()]
         rise, reach = value - values.min(axis=1), np.abs(_ACROSS[index])
         needed = value + rise > max(highest, limit or 0.0)
-        left = (rise > _RTOL * value) & (needed | (reach == 1).any(axis=1))
+        left = (rise > _FLAT * value) & (needed | (reach == 1).any(axis=1))
         if not left.any() or (limit is not None and highest >= limit):
             break
-        half = half * np.where(reach == 1, 1 / shrink, np.where(reach == 0, shrink, 1.0))
+        half = half * np.where(reach == 1, 1 / _SHRINK, np.where(reach == 0, _SHRINK, 1.0))
         half[:, 0] = np.minimum(half[:, 0], box[:, 0])
         place, half, box = place[left], half[left], box[left]
     return highest, top
