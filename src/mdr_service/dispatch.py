@@ -19,6 +19,7 @@ from mdr_service.schemas.batch import BatchItem, BatchQuery
 from mdr_service.schemas.contacts import Query
 from mdr_service.schemas.fits import FitQuery
 from mdr_service.schemas.impacts import ImpactQuery
+from mdr_service.schemas.profiles import SeriesProfile
 from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.schemas.wear import EvolutionQuery
@@ -27,15 +28,15 @@ from mdr_service.serializers.picture import AS_USUAL, Appearance
 from mdr_service.settings import SETTINGS
 
 _logger: Final = logging.getLogger(__name__)
-# Most numbers in the response to a query that runs on the event loop, about ten for each load:
-# fields at a thousand radii, which take a millisecond or two.
+# Most numbers in the response to a query that runs on the event loop, about ten for each load.
+# All count for each term of a series: fields at a thousand radii, which take a millisecond or two.
 _AT_ONCE, _PER_LOAD = 1_100, 10
 
 
 def is_short(query: Query) -> bool:
     """Return True if a query runs on the event loop, for which all other requests wait.
 
-    The limit of time of a compute process bounds any other query.
+    Any other runs in a compute process, for at most `budget_seconds`.
     """
     is_slow = (
         isinstance(query, SubsurfaceQuery | EvolutionQuery | ImpactQuery | FitQuery)
@@ -45,7 +46,8 @@ def is_short(query: Query) -> bool:
         or (query.path and query.path.nonlinear)
     )
     size = query.numbers + _PER_LOAD * (query.path.samples if query.path else query.loads)
-    return not is_slow and size <= _AT_ONCE
+    terms = len(query.profile.terms) if isinstance(query.profile, SeriesProfile) else 1
+    return not is_slow and terms * size <= _AT_ONCE
 
 
 def respond(
