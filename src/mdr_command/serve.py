@@ -61,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     for each in (signal.SIGTERM, signal.SIGINT):
         signal.signal(each, lambda *_: sys.exit(0))
     place = f"[{host}]" if ":" in host else host
-    line = f"MDR: documentation at http://{place}:{listener.getsockname()[1]}/docs\n"
+    line = f"MDR: starting, documentation at http://{place}:{listener.getsockname()[1]}/docs\n"
     # The service runs whether or not the line can be written.
     with suppress(OSError):
         os.write(sys.stdout.fileno(), line.encode())

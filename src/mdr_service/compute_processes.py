@@ -1,10 +1,11 @@
 """Compute processes of the server: their queue, their handles, and the loop that they run.
 
-Computations that are longer than a round trip run in a process of their own: a thread would hold
-the global interpreter lock (GIL), and could not be terminated. They wait in the order of arrival
-for up to `queue_seconds`, then run for up to `budget_seconds`; a single limit would terminate
-computations half-way that had mainly waited. Of those that wait, the client that computes least is
-next, and one that computes in several processes gives back the last while another waits.
+Computations that are longer than a round trip run in compute processes: a thread would hold the
+global interpreter lock (GIL), and could not be terminated. They wait for up to `queue_seconds`,
+then run for up to `budget_seconds`; a single limit would terminate computations half-way that had
+mainly waited. Computations of one client wait in their order; of several clients, the one that
+computes least is next, and one that computes in several processes gives back the last while another
+waits.
 
 Calls and outcomes are pickled, and preceded by their length.
 """
@@ -69,7 +70,7 @@ class ComputeProcess:
         self._calls = cast("StreamWriter", process.stdin)
         self._outcomes = cast("StreamReader", process.stdout)
         self.usable = True
-        self.end = "start"
+        self.reason_if_ended = "start"
         """Reason for which it will have ended if nothing else happens."""
 
     @classmethod
@@ -137,7 +138,7 @@ class WorkerPool:
         self._waiting: dict[_Job, Future[ComputeProcess]] = {}
         self._running: dict[_Job, ComputeProcess] = {}
         self._supervised = False
-        # Set once every process has started, or one has failed to.
+        # Set once every process has started, or one has failed to or has ended.
         self._settled = Event()
 
     @asynccontextmanager
@@ -165,6 +166,7 @@ class WorkerPool:
         while True:
             try:
                 await self._lend_process(self_test)
+                self._settled.set()
             except Exception:
                 _logger.exception("compute process failed")
                 self._settled.set()
@@ -176,7 +178,7 @@ class WorkerPool:
         ended = create_task(process.wait())
         try:
             _raised(await process.call(_START_SECONDS, self_test))
-            process.end = "lost"
+            process.reason_if_ended = "lost"
             self._processes.add(process)
             self._offer(process)
             if len(self._processes) == self._settings.compute_processes:
@@ -187,14 +189,17 @@ class WorkerPool:
             if process in self._idle:
                 self._idle.remove(process)
             if self._supervised:
-                observability.RESTARTS.labels(process.end).inc()
+                observability.RESTARTS.labels(process.reason_if_ended).inc()
             process.kill()
             status = await ended
             if self._supervised:
-                _logger.warning("compute process ended with status %d: %s", status, process.end)
+                reason = process.reason_if_ended
+                _logger.warning("compute process ended with status %d: %s", status, reason)
 
     def _offer(self, process: ComputeProcess) -> None:
-        """Give an idle process to the client that computes least, of its first computation."""
+        """Give an idle process to the client that computes least, for its first computation."""
+        if not process.usable:
+            return
         if not self._waiting:
             self._idle.append(process)
             return
@@ -202,8 +207,12 @@ class WorkerPool:
         job = min(self._waiting, key=lambda each: running[each.client])
         self._waiting.pop(job).set_result(process)
 
-    async def run_in_process(self, function: Callable[..., _Result], *arguments: Any) -> _Result:
+    async def run_in_process(
+        self, function: Callable[..., _Result], *arguments: Any, seconds: float | None = None
+    ) -> _Result:
         """Return the result of a function of a module, computed in a process.
+
+        The limit of the computation is `seconds`, by default that of a query.
 
         Raises ServiceError if the queue is full, the wait or the computation takes too long, or
         the process is lost; besides all that the function raises.
@@ -216,23 +225,23 @@ class WorkerPool:
             if record:
                 record.queued += job.age
         self._running[job] = process
+        limit = seconds or self._settings.budget_seconds
         try:
-            outcome = await process.call(self._settings.budget_seconds, function, *arguments)
+            outcome = await process.call(limit, function, *arguments)
         except TimeoutError:
-            process.end = "time"
-            detail = f"the time limit of a query is {self._settings.budget_seconds:g} s"
+            process.reason_if_ended = "time"
+            detail = f"the time limit is {limit:g} s"
             raise ServiceError(problems.TIME_EXCEEDED, detail) from None
         except Exception as error:
             # Whatever the exception is, the process is lost, and nothing else.
             process.kill()
-            if process.end == "displaced":
+            if process.reason_if_ended == "displaced":
                 reason = "terminated: another client waited, and this one computed more"
                 raise self._busy(reason) from None
             raise _lost("the compute process ended") from error
         finally:
             del self._running[job]
-            if process.usable:
-                self._offer(process)
+            self._offer(process)
         return cast("_Result", _raised(outcome))
 
     async def _take_process(self, job: _Job) -> ComputeProcess:
@@ -270,7 +279,7 @@ class WorkerPool:
         running = Counter(job.client for job in self._running)
         last = max(self._running, key=lambda job: (running[job.client], job.since), default=None)
         if last and running[last.client] > running[waiting.client] + 1:
-            self._running[last].end = "displaced"
+            self._running[last].reason_if_ended = "displaced"
             self._running[last].kill()
 
     def _busy(self, reason: str) -> ServiceError:

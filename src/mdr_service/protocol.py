@@ -10,6 +10,7 @@ import re
 import socket
 import sys
 from asyncio import AbstractEventLoop, Transport
+from math import ceil
 from typing import Any, Final, cast
 
 import h11
@@ -59,7 +60,7 @@ class BoundedProtocol(H11Protocol):
         link.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)
         if option := getattr(socket, "TCP_USER_TIMEOUT", None):
             # Linux only.
-            link.setsockopt(socket.IPPROTO_TCP, option, round(1e3 * SETTINGS.request_seconds))
+            link.setsockopt(socket.IPPROTO_TCP, option, ceil(1e3 * SETTINGS.request_seconds))
 
     def connection_lost(self, exc: Exception | None) -> None:
         self._arrival.cancel()

@@ -31,7 +31,8 @@ def declare(parser: argparse.ArgumentParser) -> None:
     add(
         "--answers",
         default="",
-        help="quantities to compute, separated by commas (all but the largest stresses)",
+        help="quantities to compute, separated by commas (all but maxima, errors of model or "
+        "data, and pull-off)",
     )
     add("--keep", default="", help="columns of the table to copy, separated by commas")
     add("--out", type=Path, required=True, help="result: .parquet or .csv")
@@ -39,7 +40,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
     add("--restart", action="store_true", help="discard the checkpoint of an earlier sweep")
     add("--scheduler", metavar="ADDRESS", help="Dask scheduler, for example tcp://host:8786")
     add("--workers", type=int, help="number of processes (all cores if that saves time)")
-    add("--chunk", type=int, help="cases in a chunk (as many as take about a second)")
+    add("--chunk", type=int, help="cases in a chunk (as many as take about two seconds)")
     add("--plan", action="store_true", help="print estimated time and disk use, then exit")
 
 

@@ -19,7 +19,7 @@ QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
     "wear": members(WearAnswer, ["radius", *get_args(WearField)]),
 }
 """Quantities that a sweep computes unless some are named, by query."""
-MAXIMA: Final[Mapping[str, tuple[str, ...]]] = {
+ONLY_IF_NAMED: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": ("maximum_pressure", "model_error", "data_error", *PULL_OFF),
     "tangential": ("maximum_pressure", "maximum_shear_stress", "model_error", "data_error"),
     "wear": ("model_error",),

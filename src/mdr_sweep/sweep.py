@@ -22,7 +22,7 @@ from mdr_sweep.checkpoint import Checkpoint
 from mdr_sweep.request_columns import field
 from mdr_sweep.spec import (
     ERROR,
-    MAXIMA,
+    ONLY_IF_NAMED,
     QUANTITIES,
     WARNING,
     ExitStatus,
@@ -91,7 +91,7 @@ def specified(arguments: Namespace) -> tuple[Spec, Source]:
     names = source.schema.names
     constants = {name: value for name, value in template.items() if name not in names}
     kept, wanted = _names(arguments.keep), _names(arguments.answers)
-    allowed = (*QUANTITIES[query], *MAXIMA[query])
+    allowed = (*QUANTITIES[query], *ONLY_IF_NAMED[query])
     _reject("--keep: unknown columns", set(kept) - set(names))
     _reject(f"--answers: not in {', '.join(allowed)}:", set(wanted) - set(allowed))
     quantities = tuple(name for name in allowed if name in (wanted or QUANTITIES[query]))

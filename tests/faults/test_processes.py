@@ -210,8 +210,8 @@ def ready(port: int) -> int:
 def test_stopped_compute_processes_are_replaced(state: str) -> None:
     """Within 15 s; until then the instance is not ready, and queries are rejected."""
     port = free_port()
-    # A process is missed after its time limit; starting another one takes some seconds.
-    with running(service(port), port, MDR_BUDGET_SECONDS="4") as process:
+    # A process is missed after the time limit of the self-test.
+    with running(service(port), port) as process:
         expected = ask(port, "/v1/tangential/history", LONGER)
         stopped = computing(process.pid)
         pool = ThreadPoolExecutor(4)

@@ -175,11 +175,14 @@ def test_headers_are_limited(served: Served, headers: bytes, status: int) -> Non
             assert body == before[0][1]
 
 
-def test_rejected_connection_is_closed_after_the_response(served: Served) -> None:
+def test_rejected_connection_is_counted_and_closed_after_the_response(served: Served) -> None:
+    counter = observability.PROBLEMS.labels("headers-too-large")
+    before = counter._value.get()
     with served.connect() as client:
         client.sendall(post(headers=b"X: %s\r\n" % (b"a" * MAX_HEADER_BYTES)))
         assert [status for status, _ in read(client, 2)] == [431]
         assert is_closed(client)
+    assert counter._value.get() == before + 1
 
 
 def test_long_url_is_rejected(served: Served) -> None:
@@ -417,10 +420,3 @@ def test_slow_reader_receives_the_whole_response(
             time.sleep(0.1)
     assert text.endswith(b"\r\n\r\n" + expected)
     assert time.monotonic() - began > 2.0
-
-
-def test_rejections_are_counted(served: Served) -> None:
-    counter = observability.PROBLEMS.labels("headers-too-large")
-    before = counter._value.get()
-    served.responses(post(headers=b"X: %s\r\n" % (b"a" * MAX_HEADER_BYTES)))
-    assert counter._value.get() == before + 1

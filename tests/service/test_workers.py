@@ -158,10 +158,12 @@ async def wait_for(condition: Callable[[], bool]) -> None:
 # The metrics describe the pool that was started last: tests of the shared pool come first.
 
 
-def test_process_is_reused(shared: Shared) -> None:
+def test_process_is_reused_whatever_it_prints(shared: Shared) -> None:
     async def test(pool: WorkerPool) -> None:
         first = await pool.run_in_process(own_process)
         assert first != os.getpid()
+        # On its standard output, which is not mistaken for a result.
+        assert await pool.run_in_process(print_something) == first
         assert await pool.run_in_process(own_process) == first
 
     shared(test)
@@ -179,13 +181,6 @@ def test_errors_return_from_the_process(shared: Shared) -> None:
         with pytest.raises(DefectError, match="a bug"):
             await pool.run_in_process(broken)
         assert ready_processes() == 1
-
-    shared(test)
-
-
-def test_standard_output_of_the_process_is_not_mistaken_for_a_result(shared: Shared) -> None:
-    async def test(pool: WorkerPool) -> None:
-        assert await pool.run_in_process(print_something) == await pool.run_in_process(own_process)
 
     shared(test)
 
@@ -252,6 +247,18 @@ def test_any_failure_of_an_exchange_loses_that_process_only(
         await wait_for(lambda: not process_exists(first))
         assert await pool.run_in_process(own_process) != first
         assert lost_processes() == counted + 1
+
+    run(test)
+
+
+def test_ended_process_is_not_offered() -> None:
+    async def test(pool: WorkerPool) -> None:
+        (process,) = pool._processes
+        # As by a computation that is cancelled once it has the process.
+        pool._idle.remove(process)
+        process.kill()
+        pool._offer(process)
+        assert not pool._idle
 
     run(test)
 
