@@ -24,8 +24,9 @@ from mdr_core.wear.initial_state import InitialState
 def test_too_few_cycles_are_rejected(cycles: float) -> None:
     contact = normal.solve(Paraboloid(2.0), 2.3e9, normal_force=1e5)
     given: dict[str, Any] = {"wear_coefficient": 1e-13, "tangential_displacement": 1e-5}
-    with pytest.raises(AccuracyError):
+    with pytest.raises(AccuracyError, match="request more cycles") as caught:
         evolution.solve(contact, 1.9e9, 0.4, cycles=[cycles], resolution=8, **given)
+    assert caught.value.path == ("cycles",)
 
 
 def test_unresolved_annulus_is_rejected() -> None:
@@ -164,12 +165,16 @@ def test_narrow_annulus_next_to_a_flat_wears_to_its_limit(body: Profile) -> None
     assert worn.worn_volume[0] == bound
 
 
-def test_first_cycle_of_a_narrow_annulus_takes_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("body", "part"), [(TruncatedParaboloid(0.3, 1.0), 2e-4), (Paraboloid(1.0), 1e-8)]
+)
+def test_first_cycle_of_a_narrow_annulus_takes_few_steps(
+    body: Profile, part: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The wear in it is a part of 1e-6, which the rounding error of the slip must not reach."""
-    body = TruncatedParaboloid(0.3, 1.0)
-    contact = normal.solve(body, 1.0, contact_radius=0.3 * (1 + 1.5e-3))
+    contact = normal.solve(body, 1.0, contact_radius=0.3 * (1 + 1.5e-5))
     contact = normal.solve(body, 1.0, indentation_depth=float(contact.indentation_depth))
-    force = {"tangential_force": 2e-4 * 0.4 * float(contact.normal_force)}
+    force = {"tangential_force": part * 0.4 * float(contact.normal_force)}
     start = tangential.solve(contact, 1.2, 0.4, **force)
     cycles = InitialState(start, 1e-3, 40).cycle_unit * np.array([1e-6, 1.0])
     monkeypatch.setattr(integrator, "_MAX_CALLS", 1500)

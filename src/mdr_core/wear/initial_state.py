@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from mdr_core import equivalent_1d
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
@@ -165,8 +166,16 @@ class InitialState:
         """Return g_0(c + offset) - g_0(c) for c = c_0 + stick_shift [D_0], all lengths in b_0."""
         profile, unit = self.normal.profile, self.length_unit
         stick = float(self.tangential_contact.stick_radius) + unit * stick_shift
-        g = profile.g(np.minimum(stick + unit * np.append(0.0, offset), self.domain))
-        return np.asarray((g[1:] - g[0]) / self.depth_unit)
+        ends = stick + unit * np.stack([np.minimum(offset, 0.0), np.maximum(offset, 0.0)])
+        ends = np.clip(ends, float(profile.first_radius), self.domain)
+        low, high = profile.coordinate_from_radius(ends)
+        width = np.minimum(unit * np.abs(offset), high)
+        if width[-1] > equivalent_1d.NARROW * high[-1]:
+            rise = profile.depth(high) - profile.depth(low)
+        else:
+            # A difference has rounding errors above the tolerance of the integration.
+            rise = equivalent_1d.depth_step(profile, high, width, low)
+        return np.asarray(np.sign(offset) * rise / self.depth_unit)
 
     def slope(self, x: Array) -> Array:
         """Return g_0'(x) [D_0/b_0], x in b_0, with a bound at a jump of f'."""

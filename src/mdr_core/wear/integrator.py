@@ -19,6 +19,8 @@ from mdr_core.wear.rates import jacobian, rates
 # and of the largest slip. A larger one leaves errors of the pressure above that at which wear
 # counts as ended.
 _ABSOLUTE: Final = 0.01
+# Scaled cycles below which the integrator's first step underflows.
+_FIRST: Final = 1e-100
 # Relative distance at which an edge has reached a place: a slope jump, or the flat or the axis,
 # where full slip begins.
 _REACHED: Final = 1e-3
@@ -49,6 +51,9 @@ def integrate(
         # An event is a change of sign, which comes too late here.
         _require_all_cycles(initial, cycles, 0.0, inf)
     first = float(scaled[scaled > 0][0])
+    if first < _FIRST:
+        detail = "the wear in so few cycles is too small to be resolved: request more cycles"
+        raise AccuracyError(detail, ("cycles",))
     calls = 0
 
     def counted(time: float, vector: Array) -> Array:
