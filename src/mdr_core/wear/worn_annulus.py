@@ -71,10 +71,13 @@ def width_where_worn(profile: Profile, stick: Array, step: Array, start: Array) 
 
     name = f"{profile.kind}'s worn annulus"
     room = largest_width(profile, stick)
+    start = np.minimum(start, room / 2)
+    found = invert(mean_rise, step, start, np.zeros_like(step), room, name)
+    if np.all(found < room / 2):
+        return found
+    # One rise at the end of the profile can take longer than the whole search.
     with np.errstate(all="ignore"):
         inside = (room == inf) | (step < mean_rise(room)[0])
-    step, start = np.where(inside, step, 0.0), np.minimum(start, room / 2)
-    found = invert(mean_rise, step, start, np.zeros_like(step), room, name)
     return np.where(inside, found, inf)
 
 
