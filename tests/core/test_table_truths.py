@@ -11,7 +11,7 @@ import pytest
 from mdr_core import fields, history, tangential
 from mdr_core.errors import InputError
 from mdr_core.normal import solve
-from mdr_core.profiles import Paraboloid, Sphere, Tabulated
+from mdr_core.profiles import Hyperboloid, Paraboloid, PowerTerm, Series, Sphere, Tabulated
 from mdr_core.subsurface import largest, yield_onset_force
 from tests.oracles import instrument_tables
 from tests.oracles.bodies import BODIES, KINKED, SHARP, SMOOTH, B, Body
@@ -444,6 +444,16 @@ def test_data_error_of_few_exact_points(count: int) -> None:
             missed = np.abs(contact.indentation_depth / expected - 1)
             covered += (missed <= np.maximum(2 * np.asarray(contact.data_error), 1e-9)).tolist()
     assert np.mean(covered) >= 0.9
+
+
+@pytest.mark.parametrize("count", [20, 50, 100, 200, 500])
+def test_data_error_covers_rounding_and_interpolation_of_smooth_bodies(count: int) -> None:
+    r, a = np.linspace(0.0, 1.0, count), [0.1, 0.3, 0.6, 0.9]
+    series = (Series((PowerTerm(1.0, 2.0), PowerTerm(0.5, power))) for power in (3.0, 4.0))
+    for body in (Paraboloid(1.0), *series, Sphere(1.2), Hyperboloid(1.0, 1.0)):
+        known, found = (solve(p, 1.0, contact_radius=a) for p in (body, Tabulated(r, body.f(r))))
+        missed = np.abs(found.normal_force / known.normal_force - 1)
+        assert (missed <= 2 * np.asarray(found.data_error)).all()
 
 
 @pytest.mark.parametrize("count", [3, 4, 5, 6, 12, 50])
