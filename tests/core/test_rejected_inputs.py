@@ -4,6 +4,7 @@ The wrong queries of `tests/service/test_wrong_input.py` reach the same checks o
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,8 @@ HERTZ = normal.solve(Paraboloid(1.0), 1.0, contact_radius=[0.1, 0.2])
 PUSHED = tangential.solve(HERTZ, 1.0, 0.5, stick_radius=[0.05, 0.1])
 MASKED = np.ma.masked_equal([1.0, -999.0, 3.0], -999.0)
 SWEPT = normal.solve(Paraboloid(np.array([1.0, 2.0])), 1.0, normal_force=1.0)
+LOADED = partial(history.solve, Cone(1.0), 1.0, 1.0, 0.3, normal_force=1.0, tangential_force=0.0)
+STATE = LOADED().final_state
 
 
 def normal_contact(profile: Any, **load: Any) -> Callable[[], Any]:
@@ -78,6 +81,9 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
         "masked",
     ),
     (lambda: history.unloaded(Cone(1.0), 1.0, 0.0, 0.3), ("material", "g_star"), "positive"),
+    (lambda: LOADED(initial_state={}), ("initial_state",), "members"),
+    (lambda: LOADED(initial_state=STATE | {"time": 1.0}), ("initial_state",), "members"),
+    (lambda: LOADED(initial_state=STATE | {"regime": 1}), ("initial_state", "regime"), "one of"),
     (tangential_contact(tangential_force=np.nan), ("tangential", "tangential_force"), "finite"),
     (
         tangential_contact(tangential_force=[0.0, -1.0]),

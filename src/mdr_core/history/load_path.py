@@ -19,6 +19,7 @@ from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import ContactState
 from mdr_core.history.slip_layout import NORMAL
 from mdr_core.history.slip_memory import LoadPoints, Polyline
+from mdr_core.history.step_results import REGIMES
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.validation import require_finite, require_not_negative
@@ -55,6 +56,12 @@ class SavedState(NamedTuple):
     @classmethod
     def parsed(cls, given: Mapping[str, Any], contact: str) -> Self:
         """Return the state of a `contact` from its members; raise InputError if it is of none."""
+        if set(given) != set(cls._fields):
+            detail = f"must have the members of a final_state: {', '.join(cls._fields)}"
+            raise InputError(("initial_state",), detail)
+        if given["regime"] not in REGIMES:
+            detail = f"must be one of {', '.join(REGIMES)}"
+            raise InputError(("initial_state", "regime"), detail)
         if given["contact"] != contact:
             detail = "belongs to another profile, material, friction coefficient or control"
             raise InputError(("initial_state", "contact"), f"{detail}: repeat those of the state")
