@@ -3,7 +3,7 @@
 cimport cython
 
 cdef Py_ssize_t FORWARD, BACKWARD, NORMAL, SLOPE, STEP
-cdef double ROUNDING
+cdef double ADJACENT
 
 
 @cython.final

@@ -12,8 +12,9 @@ from mdr_core.typing import Array, Flags, Indices
 # Columns of the sums of a vertex.
 FORWARD = 0  # normal + anchor
 BACKWARD = 1  # normal - anchor
-# Relative rounding error of the sums of a corner.
-ROUNDING = 2.0**-50
+# Part of the sums of a corner below which a change is rounding error; that of `doubles`, which has
+# no C type.
+ADJACENT = 2.0**-50
 
 
 class PolylineStack:
@@ -181,7 +182,7 @@ class PolylineStack:
             by_forward = over_forward / (1 + slope) if over_forward > 0 and slope > -1 else 0.0
             by_backward = over_backward / (1 - slope) if over_backward > 0 and slope < 1 else 0.0
             in_forward = by_forward > by_backward
-            error = ROUNDING * (abs(forward) + abs(backward))
+            error = ADJACENT * (abs(forward) + abs(backward))
             if in_forward:
                 at_vertex = self.rows[upper - 1, FORWARD] >= forward
                 other = self.rows[upper, BACKWARD] - by_forward * (1 - slope)

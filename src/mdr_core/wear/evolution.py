@@ -55,7 +55,7 @@ SCALARS: Final = (
 )
 
 # Nodes beyond `resolution`: fewer than 16 can be unstable at the stick edge.
-_MIN_NODES: Final = 16
+_EXTRA_NODES: Final = 16
 # Nodes of the second run of the error estimates, as a part of those of the first.
 _COARSER: Final = 2 / 3
 # Tolerance of the second run over that of the first.
@@ -299,7 +299,7 @@ def solve(
     if tangential_contact.full_slip and name == "tangential_force":
         detail = "full slip at any displacement: reduce the force, or prescribe the displacement"
         raise InputError(("tangential", name), detail)
-    numbers, nodes = _checked_cycles(cycles), int(resolution) + _MIN_NODES
+    numbers, nodes = _checked_cycles(cycles), int(resolution) + _EXTRA_NODES
     initial = InitialState(tangential_contact, float(wear_coefficient), nodes)
     coarser = replace(initial, nodes=int(nodes * _COARSER))
     parts = integrate(initial, numbers, rtol)

@@ -15,10 +15,12 @@ from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.rates import jacobian, rates
 
-# Part of a size below which a tolerance is a part of this size: of the wear by the first cycles,
-# and of the largest slip. A larger one leaves errors of the pressure above that at which wear
-# counts as ended.
+# Absolute tolerance, as a part of `rtol` times the wear by the first cycles. A larger one leaves
+# errors of the pressure above that at which wear counts as ended.
 _ABSOLUTE: Final = 0.01
+# Part of the largest slip up to which the tolerance of the slip is a part of itself: where there is
+# less, a growing stick zone takes it back before it counts.
+_LEAST_SLIP: Final = 0.01
 # Scaled cycles below which the integrator's first step underflows.
 _FIRST: Final = 1e-100
 # Relative distance at which an edge has reached a place: a slope jump, or the flat or the axis,
@@ -147,7 +149,7 @@ def _scale(initial: InitialState) -> Array:
     """Return the sizes of the changes of the vector by wear."""
     start = AnnulusState.of(initial, initial.vector)
     # In full slip the depth that can wear off is a part of the slip.
-    slip = initial.step * np.maximum(start.slip[:-1], _ABSOLUTE)
+    slip = initial.step * np.maximum(start.slip[:-1], _LEAST_SLIP)
     # In a narrow annulus all but b change by a part b_0/a_0 only.
     part = initial.step / (initial.stick + initial.width)
     return np.concatenate([slip, (1.0, part, part), np.full(start.tilt_terms.shape, part)])

@@ -299,15 +299,15 @@ class LimitingWear(validity.ContactResults):
         path_dependent = (
             not self._holds_depth and self.tangential_contact.control == "tangential_displacement"
         )
-        where = {
+        raised = {
             "path_dependent": path_dependent & wears & ~self.stick_zone.unbounded,
             "singular": wears & (self.stick_radius > 0),
             "no_wear": self.regime == "stick",
             "contact_lost": self.stick_zone.separated,
             "endless_wear": self.stick_zone.unbounded,
         }
-        raised = [code for code, flags in where.items() if some(flags)]
-        own = [Notice(code, _WARNINGS[code], instead=_INSTEAD.get(code)) for code in raised]
+        codes = [code for code, flags in raised.items() if some(flags)]
+        own = [Notice(code, _WARNINGS[code], instead=_INSTEAD.get(code)) for code in codes]
         return (*self.tangential_contact.warnings_without_bodies, *own)
 
 

@@ -26,7 +26,8 @@ from mdr_core.wear.initial_state import InitialState
 # Columns of a rate: by wear alone, and per unit of the rates of b, c and w_c, or d.
 _WEAR, _END, _STICK, _RETAINED = range(4)
 # Rate at which the integrator's errors of gamma(a) - D, and of the force in full slip, decay: fast
-# beside the wear, whose unit is 1, and slow beside the steps of the first cycles.
+# beside the wear, whose unit is 1, and slow beside the steps of the first cycles. By trial, rates
+# from 1 to 1000 give results within their estimates in as many steps.
 _RETURN: Final = 10.0
 
 
