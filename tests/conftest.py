@@ -12,7 +12,7 @@ from anyio.from_thread import BlockingPortal, start_blocking_portal
 from fastapi import FastAPI
 
 from mdr_service.app import create_app
-from mdr_service.compute_processes import WorkerPool
+from mdr_service.compute_processes import ComputePool
 from mdr_service.settings import SETTINGS
 
 JSON = {"content-type": "application/json"}
@@ -76,7 +76,7 @@ class Client:
 def running_client() -> Iterator[Client]:
     """Run the application in process."""
     app = create_app()
-    app.state.workers = WorkerPool(PATIENT)
+    app.state.compute = ComputePool(PATIENT)
     lifespan = app.router.lifespan_context(app)
     with start_blocking_portal() as portal, portal.wrap_async_context_manager(lifespan):
         client = Client(portal, app)

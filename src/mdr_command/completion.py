@@ -7,6 +7,8 @@ from typing import Final
 
 import shtab
 
+from mdr_command import ExitStatus
+
 _SHELLS: Final = ("bash", "zsh", "tcsh")
 
 
@@ -20,4 +22,4 @@ def run(arguments: argparse.Namespace) -> int:
     command = import_module("mdr_command.__main__")
     parser = command.parser_of(command.COMMANDS)
     sys.stdout.write(shtab.complete(parser, arguments.shell) + "\n")
-    return 0
+    return ExitStatus.OK

@@ -4,6 +4,7 @@ import argparse
 import json
 import sys
 
+from mdr_command import ExitStatus
 from mdr_service.app import create_app
 
 
@@ -12,4 +13,4 @@ def run(_arguments: argparse.Namespace) -> int:
     text = json.dumps(create_app().openapi(), indent=2, ensure_ascii=False)
     # JSON is UTF-8, whatever the terminal is.
     sys.stdout.buffer.write(f"{text}\n".encode())
-    return 0
+    return ExitStatus.OK

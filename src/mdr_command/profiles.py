@@ -3,6 +3,7 @@
 import argparse
 import sys
 
+from mdr_command import ExitStatus
 from mdr_core.profiles import KINDS
 from mdr_service.schemas.profiles import MODELS
 
@@ -16,4 +17,4 @@ def run(_arguments: argparse.Namespace) -> int:
     widths = [max(len(row[column]) for row in rows) for column in (0, 1)]
     for kind, fields, formula in rows:
         sys.stdout.write(f"{kind:{widths[0]}}  {fields:{widths[1]}}  {formula}\n")
-    return 0
+    return ExitStatus.OK

@@ -203,7 +203,7 @@ def _options(command: str) -> dict[str, FieldInfo]:
     return {
         name: field
         for name, field in fields.items()
-        if name not in content_negotiation.Form.model_fields
+        if name not in content_negotiation.ResponseParameters.model_fields
     }
 
 

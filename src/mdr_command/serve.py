@@ -11,6 +11,7 @@ from functools import partial
 import uvicorn
 from uvicorn.supervisors import Multiprocess
 
+from mdr_command import ExitStatus
 from mdr_service import observability
 from mdr_service.protocol import BoundedProtocol
 from mdr_service.settings import SETTINGS
@@ -76,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
     hang_up = signal.SIG_IGN if ignored else lambda *_: signal.raise_signal(signal.SIGTERM)
     signal.signal(signal.SIGHUP, hang_up)
     run_server()
-    return 0
+    return ExitStatus.OK
 
 
 def _bind(host: str, port: int) -> socket.socket:

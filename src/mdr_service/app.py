@@ -13,7 +13,7 @@ from fastapi import FastAPI
 from mdr_core import __version__
 from mdr_service import health, middleware, openapi
 from mdr_service.api import explorer, operations, queries
-from mdr_service.compute_processes import WorkerPool
+from mdr_service.compute_processes import ComputePool
 from mdr_service.settings import SETTINGS
 
 
@@ -23,7 +23,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         # A terminal signals all processes; the supervisor then ends the workers.
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
         threading.Thread(target=_end_after, args=(supervisor.join,), daemon=True).start()
-    async with app.state.workers.started(health.self_test):
+    async with app.state.compute.started(health.self_test):
         # It takes a quarter of a second, which no request waits for here.
         explorer.openapi_document(app)
         # A collection of garbage would visit all modules, and hold the event loop for 80 ms.
@@ -61,7 +61,7 @@ def create_app() -> FastAPI:
         lifespan=_lifespan,
     )
     app.state.transfers = middleware.Transfers(SETTINGS.max_transfer_bytes)
-    app.state.workers = WorkerPool(SETTINGS)
+    app.state.compute = ComputePool(SETTINGS)
     middleware.install(app)
     openapi.extend(app)
     app.mount("/docs/swagger", explorer.Pages(packages=[("fastapi_swagger", "resources")]))

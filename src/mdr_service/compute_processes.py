@@ -127,7 +127,7 @@ class _Job:
         return monotonic() - self.since
 
 
-class WorkerPool:
+class ComputePool:
     """Compute processes of one server, and the queue before them."""
 
     def __init__(self, settings: Settings) -> None:

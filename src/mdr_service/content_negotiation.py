@@ -19,7 +19,7 @@ UNITS: Final = (
 )
 
 
-class Form(BaseModel):
+class ResponseParameters(BaseModel):
     """Parameters of a URL that tell the form of the response."""
 
     model_config = ConfigDict(extra="forbid")

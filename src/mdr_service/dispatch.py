@@ -30,7 +30,7 @@ from mdr_service.settings import SETTINGS
 _logger: Final = logging.getLogger(__name__)
 # Most numbers in the response to a query that runs on the event loop, about ten for each load.
 # All count for each term of a series: fields at a thousand radii, which take a millisecond or two.
-_AT_ONCE, _PER_LOAD = 1_100, 10
+_MAX_NUMBERS_ON_LOOP, _PER_LOAD = 1_100, 10
 
 
 def is_short(query: Query) -> bool:
@@ -47,7 +47,7 @@ def is_short(query: Query) -> bool:
     )
     size = query.numbers + _PER_LOAD * (query.path.samples if query.path else query.loads)
     terms = len(query.profile.terms) if isinstance(query.profile, SeriesProfile) else 1
-    return not is_slow and terms * size <= _AT_ONCE
+    return not is_slow and terms * size <= _MAX_NUMBERS_ON_LOOP
 
 
 def respond(

@@ -18,7 +18,7 @@ from pydantic_core import PydanticCustomError
 from mdr_core.errors import InputError
 from mdr_core.validation import FINITE
 from mdr_service import problems
-from mdr_service.content_negotiation import Form
+from mdr_service.content_negotiation import ResponseParameters
 from mdr_service.schemas import contacts
 from mdr_service.schemas.flat import leaves, nested
 from mdr_service.schemas.load_paths import HistoryQuery
@@ -70,7 +70,7 @@ _BODIES: Final = (
 _CYCLES: Final = frozenset({"cycles", "cycles.normal", "cycles.tangential"})
 
 
-class Parameters(Form):
+class Parameters(ResponseParameters):
     """Parameters of a URL that stand for a request."""
 
     model: ClassVar[type[contacts.Query]]

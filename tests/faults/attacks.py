@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 
-from mdr_service.api.query_route import AT_ONCE_BYTES
+from mdr_service.api.query_route import MAX_PARSED_ON_LOOP
 from mdr_service.schemas.examples import EXAMPLES
 from tests.faults.load import HOST, Client, ResetError, post, request
 
@@ -65,7 +65,7 @@ def new_table(number: int, points: int = 1_100) -> bytes:
     table = f'"kind":"tabulated","r":{list(range(points))},"f":[{",".join(heights)}]'
     rest = '"material":{"e_star":1.0},"load":{"normal_force":1e3}'
     body = f'{{"profile":{{{table}}},{rest}}}'.replace(" ", "").encode()
-    assert 12_000 < len(body) <= AT_ONCE_BYTES
+    assert 12_000 < len(body) <= MAX_PARSED_ON_LOOP
     return request("/v1/normal", body)
 
 

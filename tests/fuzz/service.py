@@ -38,7 +38,7 @@ class Service:
 
         self._app = create_app()
         # A campaign starts no other processes.
-        self._app.state.workers.run_in_process = run
+        self._app.state.compute.run_in_process = run
         self._loop = asyncio.new_event_loop()
         self._defects: list[BaseException] = []
         handler = logging.Handler()

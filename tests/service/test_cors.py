@@ -9,7 +9,7 @@ from httpx import ASGITransport, AsyncClient, Response
 
 from mdr_service import middleware
 from mdr_service.app import create_app
-from mdr_service.compute_processes import WorkerPool
+from mdr_service.compute_processes import ComputePool
 from mdr_service.settings import SETTINGS, from_environment
 
 PAGE = "https://page.example"
@@ -24,7 +24,7 @@ def application(monkeypatch: pytest.MonkeyPatch, origins: str) -> FastAPI:
     app = create_app()
     # Without a compute process or a queue, queries that need one are rejected.
     none = SETTINGS.model_copy(update={"queue_length": 0})
-    app.state.workers = WorkerPool(none)
+    app.state.compute = ComputePool(none)
     return app
 
 
@@ -88,7 +88,7 @@ def test_problems_are_readable_across_origins(
 ) -> None:
     app = application(monkeypatch, PAGE)
     if status == 500:
-        app.state.workers = None
+        app.state.compute = None
     if "content" in options:
         options = options | {"headers": {"Content-Type": "application/json"}}
     response = send(app, method, path, **options)

@@ -16,7 +16,7 @@ from anyio.from_thread import start_blocking_portal
 
 from mdr_core.errors import AccuracyError, DefectError, InputError
 from mdr_service import observability, problems
-from mdr_service.compute_processes import ComputeProcess, WorkerPool
+from mdr_service.compute_processes import ComputePool, ComputeProcess
 from mdr_service.problems import ServiceError
 from mdr_service.settings import Settings
 
@@ -31,7 +31,7 @@ ONE = Settings(
 HASTY = ONE.model_copy(update={"queue_seconds": 0.2})
 PATIENCE = 30.0
 
-Test = Callable[[WorkerPool], Awaitable[None]]
+Test = Callable[[ComputePool], Awaitable[None]]
 Shared = Callable[[Test], None]
 
 
@@ -102,7 +102,7 @@ def run(
     warm_up: Callable[[], object] = own_process,
 ) -> None:
     async def main() -> None:
-        pool = WorkerPool(settings)
+        pool = ComputePool(settings)
         async with pool.started(warm_up):
             await test(pool)
 
@@ -112,14 +112,14 @@ def run(
 @pytest.fixture(scope="module")
 def shared() -> Iterator[Shared]:
     """Run a test in the pool of one process that several tests share."""
-    pool = WorkerPool(ONE)
+    pool = ComputePool(ONE)
     started = pool.started(own_process)
     with start_blocking_portal() as portal, portal.wrap_async_context_manager(started):
         yield lambda test: portal.call(test, pool)
 
 
 @asynccontextmanager
-async def occupied(pool: WorkerPool, path: Path) -> AsyncIterator[None]:
+async def occupied(pool: ComputePool, path: Path) -> AsyncIterator[None]:
     """Keep the only process busy within the context."""
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(pool.run_in_process, until, path)
@@ -159,7 +159,7 @@ async def wait_for(condition: Callable[[], bool]) -> None:
 
 
 def test_process_is_reused_whatever_it_prints(shared: Shared) -> None:
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         first = await pool.run_in_process(own_process)
         assert first != os.getpid()
         # On its standard output, which is not mistaken for a result.
@@ -170,7 +170,7 @@ def test_process_is_reused_whatever_it_prints(shared: Shared) -> None:
 
 
 def test_errors_return_from_the_process(shared: Shared) -> None:
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         result = await error_of(pool.run_in_process(wrong))
         assert result.type == problems.INVALID_REQUEST
         assert list(result.errors) == [("/load/normal_force/3", "is wrong")]
@@ -186,7 +186,7 @@ def test_errors_return_from_the_process(shared: Shared) -> None:
 
 
 def test_query_is_rejected_when_the_queue_is_full(shared: Shared, tmp_path: Path) -> None:
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
             began = time.monotonic()
             tasks.start_soon(pool.run_in_process, own_process)
@@ -201,7 +201,7 @@ def test_query_is_rejected_when_the_queue_is_full(shared: Shared, tmp_path: Path
 
 
 def test_time_in_the_queue_is_recorded(shared: Shared, tmp_path: Path) -> None:
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         record = start_record()
         async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
             tasks.start_soon(pool.run_in_process, own_process)
@@ -217,7 +217,7 @@ def test_time_in_the_queue_is_recorded(shared: Shared, tmp_path: Path) -> None:
 
 
 def test_computation_beyond_its_time_limit_is_terminated_and_the_next_is_answered() -> None:
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         first = await pool.run_in_process(own_process)
         began = time.monotonic()
         result = await error_of(pool.run_in_process(sleep_for, 60.0))
@@ -240,7 +240,7 @@ def test_any_failure_of_an_exchange_loses_that_process_only(
         monkeypatch.setattr(ComputeProcess, "call", call)
         raise error("of a child")
 
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         first, counted = await pool.run_in_process(own_process), lost_processes()
         monkeypatch.setattr(ComputeProcess, "call", fail)
         assert (await error_of(pool.run_in_process(own_process))).type == problems.LOST
@@ -252,7 +252,7 @@ def test_any_failure_of_an_exchange_loses_that_process_only(
 
 
 def test_ended_process_is_not_offered() -> None:
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         (process,) = pool._processes
         # As by a computation that is cancelled once it has the process.
         pool._idle.remove(process)
@@ -265,7 +265,7 @@ def test_ended_process_is_not_offered() -> None:
 
 def test_pool_without_supervision_is_not_ready() -> None:
     async def main() -> ServiceError:
-        pool = WorkerPool(ONE)
+        pool = ComputePool(ONE)
         async with pool.started(own_process):
             await pool.run_in_process(own_process)
         return await error_of(pool.run_in_process(own_process))
@@ -274,7 +274,7 @@ def test_pool_without_supervision_is_not_ready() -> None:
 
 
 def test_process_that_fails_to_start_is_restarted(tmp_path: Path) -> None:
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         result = await error_of(pool.run_in_process(own_process))
         assert (result.type, result.retry_after) == (problems.LOST, 1)
         assert ready_processes() == 0
@@ -286,7 +286,7 @@ def test_process_that_fails_to_start_is_restarted(tmp_path: Path) -> None:
 
 
 def test_process_that_fails_its_self_test_is_not_used() -> None:
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         assert (await error_of(pool.run_in_process(own_process))).type == problems.LOST
         assert ready_processes() == 0
 
@@ -294,7 +294,7 @@ def test_process_that_fails_its_self_test_is_not_used() -> None:
 
 
 def test_query_that_waits_too_long_is_rejected(tmp_path: Path) -> None:
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         async with occupied(pool, tmp_path / "go"):
             assert (await error_of(pool.run_in_process(own_process))).type == problems.BUSY
 
@@ -304,11 +304,11 @@ def test_query_that_waits_too_long_is_rejected(tmp_path: Path) -> None:
 def test_queue_is_served_in_order_and_waiting_does_not_count_as_computing(tmp_path: Path) -> None:
     order: list[int] = []
 
-    async def ask(pool: WorkerPool, number: int) -> None:
+    async def ask(pool: ComputePool, number: int) -> None:
         await pool.run_in_process(sleep_for, 0.5)
         order.append(number)
 
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         async with occupied(pool, tmp_path / "go"), anyio.create_task_group() as tasks:
             for number in range(4):
                 tasks.start_soon(ask, pool, number)
@@ -324,7 +324,7 @@ TWO = ONE.model_copy(update={"compute_processes": 2, "queue_length": 9, "queue_s
 
 
 def test_client_with_several_processes_makes_room_for_another() -> None:
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         displaced: list[ServiceError] = []
 
         async def keep_busy() -> None:
@@ -350,7 +350,7 @@ def test_client_with_several_processes_makes_room_for_another() -> None:
 
 
 def test_client_with_the_longest_queue_gives_up_its_last(tmp_path: Path) -> None:
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         results: list[object] = []
 
         async def ask(client: str) -> None:
@@ -373,7 +373,7 @@ def test_client_with_the_longest_queue_gives_up_its_last(tmp_path: Path) -> None
 
 
 def test_queries_of_one_client_do_not_displace_each_other() -> None:
-    async def test(pool: WorkerPool) -> None:
+    async def test(pool: ComputePool) -> None:
         async with anyio.create_task_group() as tasks:
             for _ in range(3):
                 tasks.start_soon(pool.run_in_process, sleep_for, 1.0)

@@ -68,9 +68,8 @@ def failures(*types: ProblemType) -> Responses:
     }
 
 
-POST_FAILURES: Final = failures(*_BODY, *_COMPUTATION)
-# Without 304: generators of clients give a response without content no type.
-GET_FAILURES: Final = failures(*_COMPUTATION)
+POST_FAILURES: Final = failures(problems.HEADERS_TOO_LARGE, *_BODY, *_COMPUTATION)
+GET_FAILURES: Final = failures(problems.HEADERS_TOO_LARGE, *_COMPUTATION)
 RESULT: Final[Responses] = {
     200: {
         "description": "Result of the query",

@@ -73,7 +73,7 @@ async def ready(request: Request) -> Health:
 
     An instance that is busy is not ready for the moment.
     """
-    await request.app.state.workers.run_in_process(health.self_test, seconds=health.SECONDS)
+    await request.app.state.compute.run_in_process(health.self_test, seconds=health.SECONDS)
     return _OK
 
 

@@ -8,7 +8,7 @@ from fastapi.types import DecoratedCallable
 
 from mdr_service.api.documentation import GET_FAILURES, POST_FAILURES, RESULT
 from mdr_service.api.query_route import QueryRoute
-from mdr_service.content_negotiation import Form
+from mdr_service.content_negotiation import ResponseParameters
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas.batch import BatchAnswer, BatchQuery
 from mdr_service.schemas.contacts import NormalQuery, TangentialQuery
@@ -22,7 +22,7 @@ from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 
 router = APIRouter(route_class=QueryRoute, responses=POST_FAILURES)
-_Form = Annotated[Form, Query()]
+_Form = Annotated[ResponseParameters, Query()]
 
 
 def _examples(name: str) -> Any:

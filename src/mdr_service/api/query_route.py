@@ -11,7 +11,7 @@ from starlette.responses import Response
 from uvicorn.protocols.http.flow_control import HIGH_WATER_LIMIT
 
 from mdr_service import problems
-from mdr_service.content_negotiation import Form, appearance, media_type
+from mdr_service.content_negotiation import ResponseParameters, appearance, media_type
 from mdr_service.dispatch import is_short, respond
 from mdr_service.middleware import header, hold, read_body
 from mdr_service.query_parameters import PARAMETERS, Parameters
@@ -21,13 +21,13 @@ from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS, JSON, PICTURES
 from mdr_service.serializers.picture import AS_USUAL, Appearance
 
-AT_ONCE_BYTES: Final = 16_384
+MAX_PARSED_ON_LOOP: Final = 16_384
 """Longest query that is parsed on the event loop; the worst one is rejected in 2 ms."""
 # A response depends on the query and on the version of the service alone.
 _CACHED: Final = {"Cache-Control": "max-age=3600", "Vary": "Accept"}
 
 
-def _form_of(request: Request, name: str, given: Form) -> tuple[str, Appearance]:
+def _form_of(request: Request, name: str, given: ResponseParameters) -> tuple[str, Appearance]:
     """Return media type and appearance of the response, by parameters or the header ``Accept``."""
     accept = header(request.scope, b"accept", "*/*")
     if given.format is given.size is given.units is None and accept == "*/*":
@@ -50,7 +50,7 @@ async def _answer(
     if isinstance(query, contacts.Query) and form[0] not in PICTURES and is_short(query):
         content = respond(*arguments)
     else:
-        content = await request.app.state.workers.run_in_process(respond, *arguments)
+        content = await request.app.state.compute.run_in_process(respond, *arguments)
         if len(content) > HIGH_WATER_LIMIT:
             hold(request, len(content))
     return Response(content, media_type=form[0])
@@ -69,7 +69,7 @@ class QueryRoute(APIRoute):
         """Return the handler of a request."""
         operation = str(self.operation_id)
         name = operation.removeprefix("get_")
-        parameters = Form if operation == name else PARAMETERS[name]
+        parameters = ResponseParameters if operation == name else PARAMETERS[name]
         model = BatchQuery if name == "batch" else SCHEMAS[name].model
 
         async def handle(request: Request) -> Response:
@@ -87,14 +87,14 @@ class QueryRoute(APIRoute):
                 response.headers.update(_CACHED)
                 return response
             query = await read_body(request)
-            if len(query) <= AT_ONCE_BYTES:
+            if len(query) <= MAX_PARSED_ON_LOOP:
                 query = model.model_validate_json(query)
             return await _answer(request, name, query, form)
 
         return handle
 
 
-def _url_parameters(request: Request, parameters: type[Form]) -> dict[str, str]:
+def _url_parameters(request: Request, parameters: type[ResponseParameters]) -> dict[str, str]:
     """Return the parameters of the URL, each of which can be given once."""
     text: bytes = request.scope["query_string"]
     if not text:

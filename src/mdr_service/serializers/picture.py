@@ -9,7 +9,7 @@ from mdr_service.serializers.panels import FRAME, Map, Units, panels_of
 MEDIA_TYPES: Final = {"svg": "image/svg+xml", "png": "image/png", "pdf": "application/pdf"}
 
 # Labels collide below this width of several maps, and below this height of a panel [mm].
-_MAPS, _PANEL = 90, 15
+_MAPS, _LEAST_PANEL = 90, 15
 
 
 class Appearance(NamedTuple):
@@ -43,7 +43,7 @@ def write(query: Any, result: Mapping[str, Any], appearance: Appearance, name: s
     title, panels = panels_of(query, result, units)
     count = len(panels)
     wide = _MAPS if count > 1 and isinstance(panels[0], Map) else 0
-    high = FRAME + count * _PANEL
+    high = FRAME + count * _LEAST_PANEL
     if size and (size[0] < wide or size[1] < high):
         detail = f"{count} panels need at least {max(wide, size[0])}x{max(high, size[1])}"
         raise InputError(("size",), f"{detail} mm: enlarge it, or request fewer quantities")
