@@ -50,7 +50,7 @@ _JKR: Final = 5.0
 
 
 class Curve:
-    """Equilibrium states of one profile over the contact coordinate, with c = `c`.
+    """Equilibrium states of one profile over the contact coordinate, with c = sqrt(2 pi w/E*).
 
     Loads are depths [length], and F_N/E* [length^2] under the name `normal_force`.
     """

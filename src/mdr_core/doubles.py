@@ -13,6 +13,6 @@ ADJACENT: Final = 4 * EPS
 ROUNDING: Final = 16 * EPS
 """Relative rounding error of a short sum of products, and of a root of one, with room."""
 LARGEST: Final = 1e290
-"""Largest result, and inverse of the smallest, of which sums of a few products are exact."""
+"""Largest result, and inverse of the smallest, of which sums of a few products are accurate."""
 LOG_RANGE: Final = 600.0
-"""Bound on the logarithm of a ratio of radii: exp(-600) of 1e-50 is next to underflow."""
+"""Bound on the logarithm of a ratio of radii: exp(-600) of 1e-50 is subnormal."""

@@ -1,4 +1,4 @@
-"""Choices between formulas and sums over nodes, element by element, in blocks.
+"""One formula for a number and for arrays; ordered sums; blocks of bounded size.
 
 A single load is carried as `np.float64`, not as an array without dimension, on which every
 operation takes ten times as long. The same formulas serve both; these functions evaluate only the
@@ -99,6 +99,6 @@ def in_order(weights: Array, values: Array) -> Array:
 
 
 def in_blocks(count: int, values: int = 1) -> list[slice]:
-    """Return slices of `count` rows of so many values each, whose arrays stay in the cache."""
+    """Return slices of `count` rows of so many values each, which bound the size of arrays."""
     step = max(_AT_ONCE // values, 1)
     return [slice(start, start + step) for start in range(0, count, step)]

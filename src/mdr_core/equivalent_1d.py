@@ -87,7 +87,7 @@ def force_step(profile: Profile, coordinate: Array, width: Array, stick: Array) 
 def stick_edge(
     profile: Profile, coordinate: Array, ratio: Array, rest: Array, *, of_force: bool
 ) -> tuple[Array, Array]:
-    """Return the stick radius and the width of the slip annulus under a tangential load.
+    """Return stick edge and width of the slip annulus, both in the contact coordinate.
 
     At small ratios the width is the unknown of a step of the load, at large ones c, by the closed
     inverse if there is one. Source: mdr-5, Eqs. (5.19), (5.20).

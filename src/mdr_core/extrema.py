@@ -57,15 +57,7 @@ def largest_stress(
     if isinstance(profile, Paraboloid):
         root = edge if slip is None else np.sqrt(slip[0] * (edge + slip[1]))
         return 2 * root / (np.pi * profile.radius)
-    shape = loaded.shape
-    a, c = profile.contact_radius(edge), profile.contact_radius(slip[1]) if slip else 0.0
-    infinite = loaded & False
-    for b in profile.infinite_pressure_radii:
-        begins = c <= b
-        if slip and not profile.has_no_partial_slip:
-            # A radius just beyond a flat may round to that of the flat.
-            begins = where(b == profile.first_radius, slip[1] <= 0, begins)
-        infinite = infinite | (loaded & begins & (b <= a))
+    shape, infinite = loaded.shape, _infinite(profile, edge, loaded, slip)
     unknown, result = loaded & ~infinite, where(infinite, inf, full(0.0, edge))
     if isinstance(profile, RoundedPunch) and slip is None:
         on_curve = _on_curve(profile, edge)
@@ -95,14 +87,31 @@ def largest_less_tension(profile: Profile, edge: Array, loaded: Flags, rim: Arra
     profile, edge, loaded : see `largest_stress`.
     rim : tension at the axis, where it is smallest [1].
     """
-    ends, falls = np.atleast_1d(edge), np.atleast_1d(profile.falls_from_axis(edge))
-    whole = np.atleast_1d(largest_stress(profile, ends, loaded & ~falls))
+    ends, pressed = np.atleast_1d(edge), np.atleast_1d(loaded)
+    falls = pressed & profile.falls_from_axis(ends)
+    infinite = _infinite(profile, ends, pressed & ~falls)
+    found = pressed & ~falls & ~infinite
+    largest = np.where(infinite, inf, 0.0)
     if falls.any():
-        whole[falls] = profile.axis_stress(ends[falls])
-    found = ~falls & np.atleast_1d(loaded) & np.isfinite(whole)
+        largest[falls] = profile.axis_stress(ends[falls])
     if found.any():
-        whole[found] = _search(profile, ends[found], rim=np.atleast_1d(rim)[found])
-    return whole.reshape(np.shape(edge))[()] - rim
+        largest[found] = _search(profile, ends[found], rim=np.atleast_1d(rim)[found])
+    return largest.reshape(np.shape(edge))[()] - rim
+
+
+def _infinite(
+    profile: Profile, edge: Array, loaded: Flags, slip: tuple[Array, Array] | None = None
+) -> Flags:
+    """True where the stress is infinite. Parameters: see `largest_stress`."""
+    a, c = profile.contact_radius(edge), profile.contact_radius(slip[1]) if slip else 0.0
+    infinite = loaded & False
+    for b in profile.infinite_pressure_radii:
+        begins = c <= b
+        if slip and not profile.has_no_partial_slip:
+            # A radius just beyond a flat may round to that of the flat.
+            begins = where(b == profile.first_radius, slip[1] <= 0, begins)
+        infinite = infinite | (loaded & begins & (b <= a))
+    return infinite
 
 
 def _on_curve(profile: RoundedPunch, edge: Array) -> Array:

@@ -68,8 +68,9 @@ class Impact(validity.ContactResults):
     regime: "np.ndarray[Any, np.dtype[np.str_]]"
     """Slip regime: "stick" without tangential motion, "full_slip" if all slides throughout."""
     error_estimate: float
-    """Estimate of the error of all results, over the values before the impact."""
+    """Estimate of the error of all results, over the larger value before or after the impact."""
     rtol: float
+    """Required relative accuracy, which `error_estimate` is compared with."""
     quantities: ClassVar[tuple[str, ...]] = (
         "normal_velocity",
         "tangential_velocity",

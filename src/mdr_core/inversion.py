@@ -16,8 +16,10 @@ Function = Callable[[Array], Array]
 Sloped = Callable[[Array], tuple[Array, Array]]
 
 MAX_STEPS: Final = 200
-"""Bound on an iteration. Bisection alone takes about 130 steps from bounds 1e50 apart, Newton's
-method 5 to 10."""
+"""Bound on an iteration that narrows a bracket or moves a box, for searches of peaks as well.
+
+Newton's method takes 5 to 10 steps; with bisections between its steps, bounds 1e50 apart take 140.
+"""
 # Newton's steps without bisections between them.
 _ALONE: Final = 20
 # Newton's step, and distance from the target, in log, after which one more step follows. The slope

@@ -153,6 +153,11 @@ def test_maximum_of_a_noisy_table(seed: int) -> None:
     assert float(contact.maximum_pressure) >= fields.pressure(contact, radii).max() * (1 - 1e-10)
 
 
+@pytest.mark.parametrize("profile", [Sphere(1.0), SphericalTipCone(1.0, 0.5)])
+def test_no_load_has_no_pressure_beside_others(profile: Profile) -> None:
+    assert normal.solve(profile, E_STAR, contact_radius=[0.0, 0.1]).maximum_pressure[0] == 0.0
+
+
 @pytest.mark.parametrize("profile", [Sphere(1.0), RoundedPunch(0.3, 1.0)], ids=lambda p: p.kind)
 def test_maxima_of_many_loads_match_single_loads(profile: Profile) -> None:
     radii = np.linspace(0.31, 0.99, 30)

@@ -40,7 +40,8 @@ def _on_part(branch: Branch, low: Array, high: Array, gap: Array, r: Array) -> A
     """Stress integral over low < x < high, gap = high - low, at radii below high."""
     base = branch.base
     if base == 0:
-        # Nearer to the axis the stress is that on it, up to rounding error.
+        # Nearer to the axis the stress is that on it, up to rounding error: its relative deviation
+        # is of the order (r/c)^2. Without an inner edge only r = 0 itself is to be avoided.
         r = np.maximum(r, np.where(low > 0, 1e-8 * low, 1e-120 * high))
     top = inverse_hypot(high, base)
     roots = np.maximum(top + inverse_hypot(low, base), TINY)

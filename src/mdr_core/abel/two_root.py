@@ -43,7 +43,7 @@ def two_root_integral(
     Parameters
     ----------
     weight : F(x) s/x, analytic in s.
-    b, r : break b > 0 and points 0 <= r < a [length], r of shape (m,).
+    b, r : break b >= 0 and points 0 <= r < a [length], r of shape (m,).
     annulus : a and c in the coordinate s; c <= b stands for c = b.
     growth : of the integrand, see `integrate`.
     beyond : sqrt(r^2 - b^2), if all radii lie beyond the break and it has more digits [length].

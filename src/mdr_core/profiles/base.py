@@ -168,7 +168,7 @@ class Profile(ABC):
 
     @property
     def pole(self) -> Parameter:
-        """Contact coordinate beyond a break at which g' below it would be infinite."""
+        """Contact coordinate at which g', continued past its break, is infinite; inf for none."""
         return inf
 
     @property

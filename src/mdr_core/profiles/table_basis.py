@@ -35,7 +35,7 @@ class TableFit:
     edges: Array
     """Knots [length], shape (k + 1,)."""
     rows: Array
-    """Coefficients of g' by powers of the distance from the knot below, shape (6, k)."""
+    """Coefficients of g' by powers of the distance from the knot below, shape (degree + 1, k)."""
     flanks: list[list[float]]
     """Jumps of the slope [1] and of the curvature [1/length] at each declared break."""
     rms: float

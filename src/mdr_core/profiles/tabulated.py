@@ -318,7 +318,7 @@ class Tabulated(Profile):
         return np.asarray(slope)
 
     def slip_integral(self, c: Array, r: Array) -> Array:
-        """Closed. Parameters: see `Profile`."""
+        """By Gauss's rule on the pieces. Parameters: see `Profile`."""
 
         def under(low: float, at: Array) -> Array:
             return 2 / np.pi * self._spline.under(low, self._end, at, arccosine)
@@ -331,7 +331,7 @@ class Tabulated(Profile):
         return value
 
     def outer_displacement(self, a: Array, r: Array, coordinate: float) -> Array:
-        """Closed. Parameters: see `Profile`."""
+        """By Gauss's rule on the pieces. Parameters: see `Profile`."""
         value = 2 / np.pi * self._spline.under(0.0, float(a[0]), r, arcsine)
         for factor, shape in self._flanks:
             if a[0] > shape.flat_radius:

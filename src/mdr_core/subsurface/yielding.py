@@ -13,8 +13,9 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter
 
 from mdr_core import normal, tangential
+from mdr_core.doubles import TINY
 from mdr_core.elementwise import number
-from mdr_core.errors import AccuracyError, InputError
+from mdr_core.errors import AccuracyError, DefectError, InputError
 from mdr_core.fields import graded
 from mdr_core.history import LoadHistory
 from mdr_core.inversion import MAX_STEPS
@@ -78,7 +79,7 @@ def largest(
     Raises
     ------
     InputError : another measure or body, or a Poisson's ratio out of range.
-    AccuracyError : the contact extends beyond a flat by less than 1e-12 of its radius.
+    AccuracyError : the contact extends beyond a flat by less than 5e-13 of its radius.
     """
     _require_measure(measure)
     require_poissons_ratio(("poissons_ratio",), poissons_ratio)
@@ -233,9 +234,9 @@ def _onset(
     # The first step takes the stress to grow like the mean pressure, which is exact for powers.
     means = [at(each).normal.mean_pressure for each in (load, load - _RTOL)]
     before, excess, slope = load, 0.0, log(means[0] / means[1]) / _RTOL
-    while True:
+    for _ in range(MAX_STEPS):
         value = _peak(foundations(at(load), body)[0][0], measure, nu)[0]
-        found = min(max(log(value / limit), -_REACH), _REACH)
+        found = min(max(log(max(value, TINY) / limit), -_REACH), _REACH)
         if value == inf or (load == lowest and found > 0):
             return 0.0
         if load == highest and found < 0:
@@ -248,6 +249,7 @@ def _onset(
         if not low < load < high:
             ends = {lowest, highest} & {low, high}
             load = min(ends, key=lambda end: abs(end - load)) if ends else (low + high) / 2
+    raise DefectError("the search for the onset of yield did not converge")
 
 
 @lru_cache(maxsize=256)
