@@ -251,23 +251,3 @@ def test_work_is_stored_or_dissipated(name: str, control: str) -> None:
 
 def solve(name: str, **options: Any) -> history.LoadHistory:
     return history.solve(profile_from(PROFILES[name]), E_STAR, G_STAR, MU, **options)
-
-
-@pytest.mark.every(4)
-@controls
-@pytest.mark.parametrize("name", KINDS)
-def test_error_of_a_loose_tolerance_within_estimate(name: str, control: str) -> None:
-    path = random_path(name, control, 12, 5)
-    exact = solve(name, **path, rtol=1e-13)
-    for rtol in (1e-3, 1e-6, 1e-9):
-        result = solve(name, **path, rtol=rtol)
-        for column in (
-            "tangential_force",
-            "tangential_displacement",
-            "tangential_energy",
-            "dissipation",
-        ):
-            values = getattr(exact, column)
-            bound = result.error_estimate + exact.error_estimate
-            miss = np.max(np.abs(getattr(result, column) - values))
-            assert miss <= bound * np.max(np.abs(values)), (column, rtol)
