@@ -255,19 +255,6 @@ def test_forces_are_those_of_the_stick_zone(control: str, amplitude: str) -> Non
     assert (MU * p >= tau * (1 - 1e-12)).all()
 
 
-@pytest.mark.parametrize("profile", PROFILES, ids=lambda profile: profile.kind)
-def test_fields_do_not_depend_on_the_tolerance(profile: Profile) -> None:
-    """A looser one saves nothing, and `error_estimate` does not contain it."""
-    force = float(normal.solve(profile, E_STAR, contact_radius=1.0).normal_force)
-    radius = np.linspace(0.0, 1.2, 40)
-    result = []
-    for rtol in (1e-3, 1e-13):
-        contact = normal.solve(profile, E_STAR, normal_force=force, rtol=rtol)
-        worn = limit.solve(contact, G_STAR, MU, tangential_force=0.4 * MU * force)
-        result.append((worn.worn_depth(radius), worn.pressure(radius)))
-    assert np.array_equal(result[0], result[1])
-
-
 def test_zero_load_among_others_on_a_table_wears_nothing() -> None:
     table = Tabulated((0.0, 1.0, 2.0), (0.0, 0.3, 0.8))
     contact = normal.solve(table, E_STAR, normal_force=[0.1, 0.0])
