@@ -17,7 +17,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from mdr_core.doubles import EPS
+from mdr_core.doubles import EPS, TINY
 from mdr_core.elementwise import in_blocks, in_order, some, where
 from mdr_core.equivalent_1d import break_below, depth_step, force_step, has_many_breaks
 from mdr_core.inversion import Function
@@ -226,8 +226,14 @@ class IntervalMoments:
         share, weights, cumulative = cumulative_rule(NODES)
         high, bottom = np.sqrt(stop - base), np.sqrt(np.maximum(start - base, 0.0))
         climb = width / np.where(high > 0, high + bottom, inf)
-        root = bottom + climb * share
-        past, moved = root * root, 2 * root * climb
+        # The distance from a singularity opposite to the break grows by one factor between equal
+        # shares, so that it is resolved; far from one the steps are equal.
+        opposite = profile.opposite_singularity / np.sqrt(2 * np.where(base > 0, base, TINY))
+        near = bottom + np.minimum(opposite, np.maximum(high, TINY) / EPS)
+        growth = np.log1p(climb / near)
+        step = near * np.expm1(growth * share)
+        root = bottom + step
+        past, moved = root * root, 2 * root * growth * (near + step)
         place = np.minimum(base + past, stop)
         slope = profile.depth_slope_beyond(place, base, past)
         # Rounding puts nodes of narrow intervals on a break, beyond which g' may be infinite.

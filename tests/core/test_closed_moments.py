@@ -30,21 +30,22 @@ def test_moments_next_to_the_equator_of_a_tip(low, high):
             assert abs(value / mpmath.quad(density, mpmath.linspace(start, stop, 5)) - 1) < 1e-12
 
 
-@pytest.mark.parametrize("ratio", [1.1, 1.5, 2.4])
-def test_moments_on_the_flank_of_a_steep_spherical_tip(ratio):
-    """int B_k(t) 2 dx from b on, where the sphere continues to s = -h, h = b/10."""
-    profile = SphericalTipCone(10.0, 1.0)
+@pytest.mark.parametrize("slope", [10, 100])
+@pytest.mark.parametrize("ratio", [1.001, 1.1, 1.29, 1.5, 2.4])
+def test_moments_on_the_flank_of_a_steep_spherical_tip(ratio, slope):
+    """int B_k 2 dx from b on, where the sphere continues to s = -h, h = b/slope."""
+    profile = SphericalTipCone(float(slope), 1.0)
     ends = np.array([[1.0], [ratio]]) * float(profile.flank_start)
     depth = profile.depth(ends)
     moments = interval_moments(profile, over_forces=False)
     found = moments.over(depth[0], depth[1] - depth[0], ends).weights[:, 0]
     with mpmath.workdps(20):
-        h = 1 / mpmath.sqrt(101)
-        b = 10 * h
+        h = 1 / mpmath.sqrt(1 + slope**2)
+        b = slope * h
 
         def g(s):
             x = mpmath.hypot(b, s)
-            return x * (mpmath.log((1 + x) / (h + s)) + 10 * mpmath.atan(s / b))
+            return x * (mpmath.log((1 + x) / (h + s)) + slope * mpmath.atan(s / b))
 
         end = mpmath.sqrt((mpmath.mpf(float(ends[1, 0])) - b) * (float(ends[1, 0]) + b))
         bottom, top = g(mpmath.mpf(0)), g(end)

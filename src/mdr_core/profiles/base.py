@@ -172,6 +172,11 @@ class Profile(ABC):
         return inf
 
     @property
+    def opposite_singularity(self) -> Parameter:
+        """Distance of g's singularity at s = -`opposite_singularity` beyond a break [length]."""
+        return inf
+
+    @property
     def tip_pressure(self) -> Parameter:
         """Limit of mean pressure / E* as the load vanishes [1]: zero for smooth and blunt tips."""
         return 0.0

@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Callable
-from math import inf, pi
+from math import pi
 
 import numpy as np
 
@@ -43,11 +43,6 @@ class Flanked(Profile):
     def scale(self) -> Parameter:
         return self.flank_start
 
-    @property
-    def _opposite_singularity(self) -> Parameter:
-        """Distance of the flank's singularity at s = -`_opposite_singularity` [length]."""
-        return inf
-
     def flank(self, past: Array) -> tuple[Array, Array]:
         """x and s at x = b + past."""
         b = self.flank_start
@@ -68,5 +63,5 @@ class Flanked(Profile):
             x = np.hypot(b, s)
             return factor(x, s) * self.weight(x, s)
 
-        nearest = np.minimum(b, self._opposite_singularity)
+        nearest = np.minimum(b, self.opposite_singularity)
         return power_law_integral(density, self.flank(past)[1], nearest)

@@ -58,13 +58,13 @@ class SphericalTipCone(TippedCone):
         return self.tip_radius
 
     @cached_property
-    def _opposite_singularity(self) -> Parameter:
+    def opposite_singularity(self) -> Parameter:
         """Distance h of the tangent point below the centre: the sphere continues to s = -h."""
         return self.tip_radius / np.hypot(1.0, self.slope)
 
     def _log_term(self, x: Array, s: Array) -> Array:
         """L, by 1 + b^2 [1/(R + h) + 1/(x + s)]/(h + s) = (R + x)/(h + s)."""
-        b, big, h = self.flank_start, self.tip_radius, self._opposite_singularity
+        b, big, h = self.flank_start, self.tip_radius, self.opposite_singularity
         return np.log1p(b / (h + s) * (b / (big + h) + b / (x + s)))
 
     def _flank_depth(self, x: Array, s: Array) -> Array:
@@ -73,11 +73,11 @@ class SphericalTipCone(TippedCone):
 
     def _flank_slope(self, x: Array, s: Array) -> Array:
         """L + t phi + t b R/(x h + s R)."""
-        b, big, h, t = self.flank_start, self.tip_radius, self._opposite_singularity, self.slope
+        b, big, h, t = self.flank_start, self.tip_radius, self.opposite_singularity, self.slope
         return self._log_term(x, s) + t * np.arctan(s / b) + t * b * big / (x * h + s * big)
 
     def _flank_force(self, x: Array, s: Array) -> Array:
-        b, big, h = self.flank_start, self.tip_radius, self._opposite_singularity
+        b, big, h = self.flank_start, self.tip_radius, self.opposite_singularity
         sphere = np.square(b * b) / (big * x + h * s)
         sphere = sphere + (big * big + x * x) * tanh_gap(self._log_term(x, s))
         return sphere + self.slope * (x * x * np.arctan(s / b) + b * s)

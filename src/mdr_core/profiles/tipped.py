@@ -37,7 +37,7 @@ class Tipped(Flanked):
     @property
     def branches(self) -> tuple[Branch, ...]:
         b = float(np.asarray(self.flank_start))
-        singularity = float(np.asarray(self._opposite_singularity))
+        singularity = float(np.asarray(self.opposite_singularity))
         return (
             Branch(0.0, lambda x, _: self._tip.dg(x), b, pole=float(np.asarray(self.pole))),
             Branch(b, self.weight, opposite_singularity=singularity),
