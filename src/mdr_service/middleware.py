@@ -60,9 +60,9 @@ def install(app: FastAPI) -> None:
 
 
 class Transfers:
-    """Total length of long bodies, at most `limit` bytes unless a single request has them.
+    """Total length of large bodies, at most `limit` bytes unless a single request has them.
 
-    A body is long above what the server buffers of every connection.
+    A body is large above what the server buffers of every connection.
     """
 
     def __init__(self, limit: int) -> None:
@@ -72,7 +72,7 @@ class Transfers:
     def add(self, record: RequestRecord, size: int) -> None:
         """Add a body, or a part of one, of a request; raise ServiceError beyond the limit."""
         if self._total > record.held and self._total + size > self._limit:
-            detail = "other long bodies are being transferred; try again in 1 s"
+            detail = "other large bodies are being transferred; try again in 1 s"
             raise ServiceError(problems.BUSY, detail, retry_after=1)
         self._total += size
         record.held += size
@@ -144,7 +144,7 @@ def _log(record: RequestRecord, route: object) -> None:
 
 
 def _sender(record: RequestRecord, send: Send) -> Send:
-    """Return what sends a response: adds the common headers, and sends a long body in pieces.
+    """Return what sends a response: adds the common headers, and sends a large body in pieces.
 
     The server buffers what the client does not read: a piece waits until the one before it is
     written.
@@ -166,7 +166,7 @@ def _sender(record: RequestRecord, send: Send) -> Send:
 
 
 def hold(request: Request, size: int) -> None:
-    """Count a long body of a request, or a part of one, until its response is sent."""
+    """Count a large body of a request, or a part of one, until its response is sent."""
     request.app.state.transfers.add(observability.CURRENT.get(), size)
 
 

@@ -41,7 +41,7 @@ RESTARTS: Final = Counter(
 LOST_LINES: Final = Counter(
     "mdr_log_lines_lost", "Log lines lost because standard error was not read.", registry=REGISTRY
 )
-# Its file descriptor in POSIX.
+# File descriptor of standard error in POSIX.
 _STANDARD_ERROR: Final = 2
 Info("mdr_build", "Version of the service.", registry=REGISTRY).info({"version": __version__})
 
@@ -78,7 +78,7 @@ class RequestRecord:
     queued: float = 0.0
     """Time in the queue [s]."""
     held: int = 0
-    """Length of its long bodies in memory [bytes]."""
+    """Length of its large bodies in memory [bytes]."""
 
 
 CURRENT: Final[ContextVar[RequestRecord | None]] = ContextVar("request", default=None)
