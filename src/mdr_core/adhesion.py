@@ -377,8 +377,8 @@ def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, 
     below = np.asarray(amount < least * (1 + ROUNDING) if least else amount <= 0)
     if some(below):
         pull_off = "pull-off force" if of_force else "pull-off depth"
-        where = f"{'below' if least else 'not above'} the {pull_off}, {least * unit:.9g}"
-        detail = f"is {where}: there is no contact"
+        side = f"{'below' if least else 'not above'} the {pull_off}, {least * unit:.9g}"
+        detail = f"is {side}: there is no contact"
         raise InputError(("load", name, *validation.first_index(below)), detail, below)
     if profile.has_no_partial_slip:
         depth = amount / (2 * profile.contact_radius(amount)) if of_force else amount

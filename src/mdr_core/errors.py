@@ -47,7 +47,7 @@ class AccuracyError(MDRError):
     path : location in the request of the value to change.
     """
 
-    def __init__(self, detail: str, path: tuple[str | int, ...] = ("rtol",)) -> None:
+    def __init__(self, detail: str, path: tuple[str | int, ...]) -> None:
         super().__init__(detail)
         self.path = path
 

@@ -14,7 +14,6 @@ from mdr_core.elementwise import full, in_blocks, is_number, some, where
 from mdr_core.inversion import MAX_STEPS
 from mdr_core.profiles import Paraboloid, Profile, RoundedPunch
 from mdr_core.typing import Array, Flags, Indices
-from mdr_core.validation import TIGHTEST
 
 # A stress at a radius, given as a contact coordinate, under the load of that index; all (m,).
 _Field = Callable[[Indices, Array], Array]
@@ -22,6 +21,9 @@ _Field = Callable[[Indices, Array], Array]
 # Samples between two singular radii, clustered at both. The pressure under the power r^100 has the
 # narrowest smooth peak, next to the contact edge: four samples lie above half its height.
 _SAMPLES: Final = 64
+# Relative variation of the stress in the last bracket, and distance from the edge over a, doubled,
+# within which the infinite tension of adhesion is taken to be constant.
+_LEAST_STEP: Final = 1e-13
 # Points across the bracket of a peak, in parts of it. Each interval of a table, whose interpolation
 # may have a peak in every one, is sampled as finely.
 _NINE: Final = np.linspace(0.0, 1.0, 9)
@@ -151,7 +153,7 @@ def _search(profile: Profile, edge: Array, *slip: Array, rim: Array | None = Non
         if rim is None:
             return stress
         ratio = profile.contact_radius(at) / profile.contact_radius(outer)
-        height = np.sqrt(np.maximum((1 - ratio) * (1 + ratio), TIGHTEST))
+        height = np.sqrt(np.maximum((1 - ratio) * (1 + ratio), _LEAST_STEP))
         return stress - rim[load] * (1 / height - 1)
 
     best = np.zeros(edge.size)
@@ -212,7 +214,7 @@ def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
         rise = top - values.min(axis=1)
         before, after = np.maximum(place - 1, 0), np.minimum(place + 1, _NINE.size - 1)
         low, high = at[rows, before], at[rows, after]
-        left = (rise > TIGHTEST * top) & (top + rise > best[load])
+        left = (rise > _LEAST_STEP * top) & (top + rise > best[load])
         left &= high - low > ADJACENT * high
         if not left.any():
             break

@@ -11,13 +11,17 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import asinh, inf, pi, sqrt
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from mdr_core.abel.two_root import Weight
+from mdr_core.doubles import LARGEST
 from mdr_core.quadrature import integrate, reach_of_power
 from mdr_core.typing import Array, Indices
+
+STEEPNESS: Final = 3.5
+"""Power up to which every rule resolves g: that of flanks, caps and their sums, with room."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +38,7 @@ class Branch:
     stop: float = inf
     start: float = 0.0
     tip: float = 1.0
-    steepness: float = 3.5
+    steepness: float = STEEPNESS
     pole: float = inf
     opposite_singularity: float = inf
 
@@ -78,6 +82,11 @@ Kernel = Callable[[Array, Array], Array]
 def arccosine(x: Array, root: Array) -> Array:
     """Return arccos(x/r), root = sqrt(r^2 - x^2), x > 0."""
     return np.arctan(root / x)
+
+
+def arccosine_growth(x: Array, root: Array) -> Array:
+    """Return d arccos(x/r)/dr = x/(r sqrt(r^2 - x^2)), root = sqrt(r^2 - x^2)."""
+    return np.asarray(x / (np.maximum(root, 1 / LARGEST) * np.hypot(x, root)))
 
 
 def arcsine(x: Array, root: Array) -> Array:

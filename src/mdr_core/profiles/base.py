@@ -13,6 +13,7 @@ import numpy as np
 
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.displacement import (
+    STEEPNESS,
     Branch,
     Kernel,
     arccosine,
@@ -199,7 +200,7 @@ class Profile(ABC):
     @property
     def steepness(self) -> float:
         """Highest power that g resembles over part of the contact, which sets the resolution."""
-        return 3.5
+        return STEEPNESS
 
     @property
     def tip_exponent(self) -> float:

@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus, log_ratio, root_step
+from mdr_core.abel.displacement import STEEPNESS
 from mdr_core.elementwise import full, some, where
 from mdr_core.profiles.base import FIELDS, NORMAL_QUANTITIES, Profile
 from mdr_core.profiles.cancellation_free import atan_gap
@@ -269,7 +270,7 @@ class Power(Profile):
 
     @property
     def steepness(self) -> float:
-        return max(3.5, float(np.max(self.exponent)))
+        return max(STEEPNESS, float(np.max(self.exponent)))
 
     @property
     def tip_exponent(self) -> float:

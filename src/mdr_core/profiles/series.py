@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from mdr_core.abel.displacement import STEEPNESS
 from mdr_core.doubles import EPS, LOG_RANGE
 from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
@@ -141,7 +142,7 @@ class Series(Profile):
 
     @property
     def steepness(self) -> float:
-        return max(3.5, *(n for _, n in self._powers))
+        return max(STEEPNESS, *(n for _, n in self._powers))
 
     @property
     def tip_exponent(self) -> float:

@@ -18,7 +18,7 @@ from scipy.optimize import nnls
 from mdr_core.doubles import ADJACENT, EPS
 from mdr_core.errors import InputError
 from mdr_core.profiles.table_basis import TableBasis, TableFit, root_mean_square
-from mdr_core.profiles.table_points import ROUNDED, TablePoints, cleaned, off_axis, scatter
+from mdr_core.profiles.table_points import EXACT_SCATTER, TablePoints, cleaned, off_axis, scatter
 from mdr_core.typing import Array
 
 # Weights of the roughness that are tried, over the one that halves the smoothest bend.
@@ -64,9 +64,10 @@ def fit_table(
     InputError : points of no body whose contact area is a single disc.
     """
     points = cleaned(r, f, breaks)
-    if uncertainty is None and (points.x.size <= _FEW or scatter(points) < ROUNDED):
+    if uncertainty is None and (points.x.size <= _FEW or scatter(points) < EXACT_SCATTER):
         uncertainty = 0.0
-    found = _nearest(points, uncertainty and uncertainty / points.scale[1])
+    relative = None if uncertainty is None else uncertainty / points.scale[1]
+    found = _nearest(points, relative)
     if found.rms > _NO_DISC * points.scale[1]:
         largest, radius = found.largest
         advice = off_axis(r, f)
@@ -90,7 +91,7 @@ def _nearest(points: TablePoints, uncertainty: float | None) -> TableFit:
     basis = TableBasis(points)
     chosen = _Spectrum(basis, uncertainty, sharp=False)
     # A tip that lowers rounding errors is none.
-    if chosen.score > ROUNDED**2:
+    if chosen.score > EXACT_SCATTER**2:
         sharp = _Spectrum(basis, uncertainty, sharp=True)
         factor = _SHARPER if uncertainty == 0 else 1 + _SHARPER_MEASURED / points.x.size
         if sharp.score * factor < chosen.score:
@@ -107,7 +108,7 @@ def _nearest(points: TablePoints, uncertainty: float | None) -> TableFit:
         jumps[np.abs(jumps) < _FLOOR] = 0.0
         # Exact heights may leave a slope as near zero as rounding allows.
         floor = 0.0
-        coefficients[-1] *= abs(coefficients[-1]) > ROUNDED
+        coefficients[-1] *= abs(coefficients[-1]) > EXACT_SCATTER
     # Where the slope falls by a step, g' is infinite and negative beyond it.
     falls = min(jumps.min(initial=0.0), coefficients[-1]) < 0
     if falls or basis.slopes(coefficients).min() <= floor:
@@ -189,7 +190,7 @@ class _Spectrum:
         smooth, rough = basis.by_roughness(sharp=sharp)
         seen, size, right = np.linalg.svd(matrix @ smooth, full_matrices=False)
         # Few points leave directions without misfit and roughness.
-        known = size > ROUNDED * size[0]
+        known = size > EXACT_SCATTER * size[0]
         seen, smooth = seen[:, known], smooth @ (right[known].T / size[known])
         bent = matrix @ rough
         shared = seen.T @ bent
@@ -204,7 +205,7 @@ class _Spectrum:
         part[: size.size] = left.T @ (base.T @ goal)
         rest = float(np.square(goal - base @ (base.T @ goal)).sum())
         # Where few points leave all bends open, there is no smoothest one.
-        weights = max(size2[0], ROUNDED**2 * float(np.square(bent).sum())) * _WEIGHTS
+        weights = max(size2[0], EXACT_SCATTER**2 * float(np.square(bent).sum())) * _WEIGHTS
         left_out = weights[:, None] / np.add.outer(weights, size2)
         misfit = np.square(left_out * part).sum(axis=1) + rest
         freedom = fitted.size + (1 - left_out).sum(axis=1)

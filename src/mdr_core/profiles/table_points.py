@@ -18,14 +18,14 @@ from mdr_core.errors import InputError
 from mdr_core.typing import Array
 
 # Scatter of the heights, over their range, that is rounding error.
-ROUNDED: Final = 1e-8
+EXACT_SCATTER: Final = 1e-8
 # Gaps between radii that are merged, over their mean spacing at equal radii.
 _SAME: Final = 1e-2
 # Neighbours on each side from which a height is predicted.
 _NEIGHBOURS: Final = 3
 # Rounded numbers: largest unit over the step between neighbours, and largest number of units: a
-# smaller one is below `ROUNDED`.
-_FINEST_STEP, _MOST_UNITS = 0.05, round(1 / (np.sqrt(12) * ROUNDED))
+# smaller one is below `EXACT_SCATTER`.
+_FINEST_STEP, _MOST_UNITS = 0.05, round(1 / (np.sqrt(12) * EXACT_SCATTER))
 # Smallest error of a rounded height, over that of most.
 _LEAST_ERROR: Final = 1e-2
 # Distance of a scan's axis from r = 0 that is reported, over the last radius.
@@ -64,7 +64,7 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
         raise InputError(("profile", "f"), f"the heights fall away from the axis: {advice}")
     weight = np.sqrt(count)
     of_radius, of_height = _rounding(given[0], given[1], x.size) if x.size > 2 else (0.0, 0.0)
-    if max(of_radius, of_height) > ROUNDED:
+    if max(of_radius, of_height) > EXACT_SCATTER:
         # An error of the radius is one of the height on a slope.
         error = np.hypot(of_radius * np.gradient(y, x), of_height)
         # On a flat an error of the radius is none of the height.

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import BPoly, PPoly, make_interp_spline
 
 from mdr_core.abel.annulus import Annulus, inverse_hypot
-from mdr_core.abel.displacement import Branch, Kernel, arccosine, arcsine
+from mdr_core.abel.displacement import Branch, Kernel, arccosine, arccosine_growth, arcsine
 from mdr_core.abel.slope_pieces import SlopePieces
 from mdr_core.abel.stress import stress_integral
 from mdr_core.doubles import EPS, TINY
@@ -224,7 +224,7 @@ class Tabulated(Profile):
         )
 
     def df(self, radius: Array) -> Array:
-        slope = self._under_radius(radius, _growth)
+        slope = self._under_radius(radius, arccosine_growth)
         tip = 2 / np.pi * self.fit.rows[0, 0]
         return np.where(radius > 0, slope, tip)[()] + sum(
             factor * shape.df(radius) for factor, shape in self._flanks
@@ -442,11 +442,6 @@ def _power_times_spline(x: Array, y: Array, even: int) -> tuple[float, Callable[
         return np.where(at < x[0], inside, spline(np.maximum(at, x[0]), order))
 
     return float(power), rest
-
-
-def _growth(x: Array, root: Array) -> Array:
-    """d arccos(x/r)/dr = x/(r sqrt(r^2 - x^2))."""
-    return np.asarray(x / (np.maximum(root, 1e-300) * np.hypot(x, root)))
 
 
 def _checked(r: Array, f: Array) -> tuple[Array, Array]:

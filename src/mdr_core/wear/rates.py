@@ -163,7 +163,8 @@ class _MovingAnnulus(AnnulusState):
             return np.asarray(-np.linalg.solve(self.conditions[:, self.moving], right))
         except np.linalg.LinAlgError:
             # Where the surface at the edge is flat the edge may move at any rate.
-            raise AccuracyError("the wear over the cycles was not resolved at its edges") from None
+            detail = "the wear is not resolved at its edges: increase the resolution"
+            raise AccuracyError(detail, ("resolution",)) from None
 
     @cached_property
     def conditions(self) -> Array:

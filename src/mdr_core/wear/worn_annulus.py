@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.abel.displacement import arccosine
+from mdr_core.abel.displacement import arccosine, arccosine_growth
 from mdr_core.doubles import TINY
 from mdr_core.inversion import invert
 from mdr_core.profiles import Profile
@@ -64,7 +64,7 @@ def width_where_worn(profile: Profile, stick: Array, step: Array, start: Array) 
     """
 
     def mean_rise(width: Array) -> tuple[Array, Array]:
-        kernels = arccosine, _rate
+        kernels = arccosine, arccosine_growth
         total, growth = profile.annulus_integrals(stick, width, *kernels)
         theta, edge = angle(stick, width), (stick + width) * _root(stick, width)
         return total / theta, width * (growth / total - stick / edge / theta)
@@ -84,11 +84,6 @@ def width_where_worn(profile: Profile, stick: Array, step: Array, start: Array) 
 def _root(stick: Array, width: Array) -> Array:
     """Return sqrt(r^2 - c^2), r = c + w [length]."""
     return np.asarray(np.sqrt(width * (2 * stick + width)))
-
-
-def _rate(x: Array, root: Array) -> Array:
-    """Return d arccos(x/r)/dr = x/(r sqrt(r^2 - x^2))."""
-    return np.asarray(x / (root * np.hypot(x, root)))
 
 
 def _segment(x: Array, root: Array) -> Array:
