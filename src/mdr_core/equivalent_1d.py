@@ -23,7 +23,7 @@ from mdr_core.validation import require_inside
 NARROW: Final = 0.05
 """Width of an annulus, relative to a, up to which a step is an integral, and part of the load at
 full slip up to which the width is the unknown: beyond it differences amplify rounding errors at
-most 20-fold."""
+most 20-fold. Within this part of full slip results are ill-conditioned (`conditioning`)."""
 # The slope at a coordinate, given as a break and the distance from it as well.
 _Slope = Callable[[Array, Array, Array], Array]
 

@@ -38,13 +38,14 @@ _ANGLES: Final = np.linspace(0, np.pi / 2, 4)
 _ACROSS, _STEPS = np.linspace(-1, 1, 5), 3.0
 # Factor by which a box shrinks, and part of the stress by which it varies in the last one.
 _SHRINK, _FLAT = 0.3, 4e-6
-# Distance of the logarithm of a force from that of a singular one, and square of the step of the
-# secant after which the next is negligible.
+# Relative accuracy of the force at the onset of yield: distance kept from forces of singular
+# stresses, step of the first slope, and square of the last step of the secant.
 _RTOL: Final = 1e-6
 # Contact coordinate over the radius of a flat below which no radius in double precision resolves
 # the stress beneath the edge: at this one it is too low by 5e-6 of its value.
 _RESOLVED: Final = 5e-13
-# Range of the logarithm of the force at the onset.
+# Largest logarithm of a ratio of forces or of stresses in the search for the onset, from which the
+# least slope follows.
 _REACH: Final = 60.0
 
 MEASURES: Final = ("von_mises", "maximum_shear")
