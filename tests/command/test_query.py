@@ -121,7 +121,7 @@ def failing(error: Exception) -> Callable[[object], object]:
 @pytest.mark.parametrize(
     ("error", "status", "sentence"),
     [
-        (AccuracyError("raise it"), 3, "rtol: raise it"),
+        (AccuracyError("raise it", ("rtol",)), 3, "rtol: raise it"),
         (ZeroDivisionError(), 1, "internal error: report it with the request"),
     ],
 )

@@ -85,7 +85,7 @@ def wrong() -> None:
 
 
 def inaccurate() -> None:
-    raise AccuracyError("not so exact")
+    raise AccuracyError("not so exact", ("rtol",))
 
 
 def refused() -> None:
