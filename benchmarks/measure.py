@@ -92,7 +92,7 @@ def medians(runs: Mapping[str, Callable[[], object]], seconds: float) -> dict[st
             # Runs are spread over all rounds, so that a busy period affects all alike.
             due = min(1.0, target_count[name] / ROUNDS) * (number + 1)
             if not samples[name] or len(samples[name]) < due:
-                if repeats[name] > 1:
+                if once[name] < LONG_SECONDS:
                     # The previous run may have displaced the caches.
                     run()
                 samples[name].append(_time(run, repeats[name]))

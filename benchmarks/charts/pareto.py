@@ -1,7 +1,7 @@
 """Check that no reference code is faster at an equal or smaller error: `make chart-pareto`.
 
 Reads the results of `pressure` and `traction`. For every case and every error level from 1e-2 to
-1e-13, the fastest method of MDR and the fastest reference code whose largest error is at most the
+1e-13, MDR and the fastest reference code whose largest error is at most the
 level are compared, as a user pays for them: openAbel's time includes its plan for these radii,
 MDR's time the fit of a table. PyAbel's matrices are made in advance. The exit status is 1 if a
 reference code is faster at an error of 1e-7 or less.
