@@ -4,7 +4,7 @@ Reads the results of `pressure` and `traction`. For every case and every error l
 1e-13, MDR and the fastest reference code whose largest error is at most the
 level are compared, as a user pays for them: openAbel's time includes its plan for these radii,
 MDR's time the fit of a table. PyAbel's matrices are made in advance. The exit status is 1 if a
-reference code is faster at an error of 1e-7 or less.
+reference code is faster at an error of 1e-9 or less.
 
 Where arrays lie in memory changes the time of a process by a tenth, of openAbel by more. Methods
 within a quarter of each other, and all others of the case that are no more than four times as slow,
@@ -23,7 +23,7 @@ from measure import medians
 from methods import BARE, method_runs
 
 LEVELS = [10.0**-decade for decade in range(2, 14)]
-PROMISED = 1e-7
+PROMISED = 1e-9
 CLOSE, FEW, PROCESSES, SECONDS = 1.25, 4.0, 9, 4.0
 HEADER = (
     "quantity",
