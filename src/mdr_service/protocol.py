@@ -47,7 +47,6 @@ class BoundedProtocol(H11Protocol):
         app_state: dict[str, Any],
         _loop: AbstractEventLoop | None = None,
     ) -> None:
-        config.h11_max_incomplete_event_size = MAX_HEADER_BYTES
         super().__init__(config, server_state, app_state, _loop)
         self._rejected = False
         self._await_request()

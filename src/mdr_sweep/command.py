@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Final
 
-from mdr_sweep.spec import QUANTITIES, ExitStatus, SweepError, UsageError
+from mdr_sweep.spec import QUANTITIES, SweepError, SweepStatus, UsageError
 
 _RESUME: Final = "completed chunks are kept; rerun the command to resume"
 
@@ -50,14 +50,14 @@ def run(arguments: argparse.Namespace) -> int:
         status: int = import_module("mdr_sweep.sweep").run(arguments)
     except ModuleNotFoundError as error:
         remedy = "run `pip install '.[sweep]'` in the checkout"
-        return _exit(f"{error.name} is missing; {remedy}", ExitStatus.ENDED_EARLY)
+        return _exit(f"{error.name} is missing; {remedy}", SweepStatus.ENDED_EARLY)
     except UsageError as error:
-        return _exit(error, ExitStatus.INVALID_INPUT)
+        return _exit(error, SweepStatus.INVALID_INPUT)
     except (KeyboardInterrupt, Exception) as error:
         if _is_interrupt(error):
-            return _exit(f"interrupted; {_RESUME}", ExitStatus.INTERRUPTED)
+            return _exit(f"interrupted; {_RESUME}", SweepStatus.INTERRUPTED)
         if isinstance(error, SweepError | OSError):
-            return _exit(f"{error}; {_RESUME}", ExitStatus.ENDED_EARLY)
+            return _exit(f"{error}; {_RESUME}", SweepStatus.ENDED_EARLY)
         raise
     return status
 

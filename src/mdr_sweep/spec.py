@@ -34,7 +34,7 @@ TEXTS: Final = frozenset({"regime", WARNING, ERROR})
 _PACKAGES: Final = ("numpy", "scipy", "pyarrow")
 
 
-class ExitStatus(IntEnum):
+class SweepStatus(IntEnum):
     """Exit status of a sweep; docs/sweeps.md lists them."""
 
     DONE = 0

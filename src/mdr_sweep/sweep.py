@@ -25,8 +25,8 @@ from mdr_sweep.spec import (
     ONLY_IF_NAMED,
     QUANTITIES,
     WARNING,
-    ExitStatus,
     Spec,
+    SweepStatus,
     UsageError,
     versions,
 )
@@ -47,7 +47,7 @@ def run(arguments: Namespace) -> int:
     estimate = resources.estimate(spec, source, arguments.workers)
     if arguments.plan:
         sys.stdout.write("".join(f"{line}\n" for line in estimate.lines))
-        return ExitStatus.DONE
+        return SweepStatus.DONE
     known = {} if arguments.restart else checkpoint.manifest
     chunk = arguments.chunk or known.get("chunk") or estimate.chunk
     # All on which the numbers of the result depend.
@@ -72,7 +72,7 @@ def run(arguments: Namespace) -> int:
         with checkpoint.result() as path:
             write(path, arguments.out.suffix, checkpoint.chunks(), identity | {"units": _UNITS})
     sys.stderr.write("".join(f"{line}\n" for line in lines))
-    return ExitStatus.ALL_FAILED if failed == source.rows else ExitStatus.DONE
+    return SweepStatus.ALL_FAILED if failed == source.rows else SweepStatus.DONE
 
 
 def specified(arguments: Namespace) -> tuple[Spec, Source]:
