@@ -12,8 +12,8 @@ from typing import Final
 import numpy as np
 
 from mdr_service.dispatch import respond
+from mdr_service.queries import QUERIES
 from mdr_service.schemas.examples import EXAMPLES
-from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS
 
 REPEATS: Final = 7
@@ -51,7 +51,7 @@ def fastest(work: Callable[[], object]) -> float:
 def row(case: str, form: str) -> str:
     """Return one line of the table."""
     name, request = CASES[case]
-    query = SCHEMAS[name].model.model_validate(request)
+    query = QUERIES[name].request.model_validate(request)
     media_type = FORMATS[form]
     content = respond(name, query, media_type)
     computed = fastest(lambda: respond(name, query, media_type))

@@ -22,9 +22,9 @@ from mdr_core.table_reader import Points, metres, read_table
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
+from mdr_service.queries import QUERIES
 from mdr_service.query_parameters import PARAMETERS
 from mdr_service.schemas.profiles import OF_NUMBERS
-from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.sentences import NOT_NUMBERS
 from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
@@ -150,7 +150,7 @@ def _content(arguments: argparse.Namespace) -> bytes:
     given = {each: found[0] for each, found in values.items()}
     profile = _table(arguments, given)
     if not given:
-        query = SCHEMAS[name].model.model_validate_json(_read(arguments.file or _STANDARD_INPUT))
+        query = QUERIES[name].request.model_validate_json(_read(arguments.file or _STANDARD_INPUT))
         return respond(name, query, media_type, look)
     if arguments.file:
         raise InputError((), "give the request by a file or by options, not both")

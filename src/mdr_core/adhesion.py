@@ -174,7 +174,7 @@ class AdhesiveContact(NormalContact):
     @cached_property
     def reference(self) -> NormalContact:
         """Contact without adhesion of the same radius."""
-        known = self.profile, self.e_star, self.coordinate, self.rtol, self.control, self.material
+        known = self.profile, self.e_star, self.coordinate, self.control, self.material
         vars(reference := NormalContact(*known))["contact_radius"] = self.contact_radius
         return reference
 
@@ -283,7 +283,7 @@ class AdhesiveContact(NormalContact):
         """Return a field of the reference, by load, less that of the retracted flat punch."""
         whole = np.asarray(field(self.reference))
         ends = zip(*map(np.ravel, (self.contact_radius, self.retraction)), strict=True)
-        punches = (NormalContact(FlatPunch(a), self.e_star, step, self.rtol) for a, step in ends)
+        punches = (NormalContact(FlatPunch(a), self.e_star, step) for a, step in ends)
         taken = np.reshape([field(punch) for punch in punches], whole.shape)
         # At the edge the tension outweighs a logarithmic pressure.
         infinite = np.isinf(taken)
@@ -299,7 +299,6 @@ def solve(
     normal_force: ArrayLike | None = None,
     contact_radius: ArrayLike | None = None,
     range_of_adhesion: float = 0.0,
-    rtol: float = 1e-10,
 ) -> AdhesiveContact:
     """Return the adhesive contact under a prescribed depth, force or contact radius.
 
@@ -316,7 +315,6 @@ def solve(
         number or an array. The first two may be negative down to the pull-off; the contact radius
         is one that is stable under a prescribed depth.
     range_of_adhesion : distance over which surfaces attract [length], for the warning `jkr_range`.
-    rtol : see `normal.solve`.
 
     Raises
     ------
@@ -333,7 +331,6 @@ def solve(
     -1.5
     """
     validation.require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
-    validation.require_tolerance(rtol)
     validation.require_single_profile(profile.swept)
     material = e_star if isinstance(e_star, Material) else None
     modulus: Any = normal_modulus(e_star)
@@ -346,7 +343,7 @@ def solve(
     coordinate, retraction, states = _state(curve, name, load, modulus)
     at_pull_off = float(curve.retraction(curve.at_pull_off))
     contact = AdhesiveContact(
-        *(profile, modulus, coordinate, rtol, name, material),
+        *(profile, modulus, coordinate, name, material),
         curve=curve,
         retraction=retraction,
         tabor_number=at_pull_off / (_TABOR * range_of_adhesion) if range_of_adhesion else inf,

@@ -129,7 +129,6 @@ def solve(
     e_star: float | None = None,
     noise: float | None = None,
     body_thickness: float | None = None,
-    rtol: float = 1e-10,
 ) -> Fit:
     """Return the parameters of a contact that fit a measured curve best.
 
@@ -147,7 +146,6 @@ def solve(
     e_star : effective modulus, needed unless it is fitted [pressure].
     noise : standard deviation of the forces, by default that of the residuals [force].
     body_thickness : see `from_bodies` [length].
-    rtol : accuracy required of the contact at the largest depth, 1e-13 to 1e-3.
 
     Returns
     -------
@@ -189,7 +187,7 @@ def solve(
         raise InputError(place, "lies beyond the end of the profile: give a longer one")
     model = _Model(profile, depth, force, tuple(fit), e_star, np.ones(depth.size, dtype=bool))
     model, found = _adhesive(model) if "work_of_adhesion" in fit else (model, model.best())
-    return model.result(found, noise, body_thickness, rtol)
+    return model.result(found, noise, body_thickness)
 
 
 def _curve(indentation_depth: ArrayLike, normal_force: ArrayLike) -> tuple[Array, Array]:
@@ -396,15 +394,13 @@ class _Model:
         slopes = np.column_stack([columns[name] for name in self.fit])
         return e_star * forces + offset, slopes
 
-    def result(
-        self, found: _Parameters, noise: float | None, body_thickness: float | None, rtol: float
-    ) -> Fit:
+    def result(self, found: _Parameters, noise: float | None, body_thickness: float | None) -> Fit:
         """Return the fit with the best parameters, or an InputError.
 
         Parameters
         ----------
         found : the parameters.
-        noise, body_thickness, rtol : see `solve`.
+        noise, body_thickness : see `solve`.
         """
         forces, slopes = self.at(found)
         _require_points(int(np.sum(forces != found["force_offset"])), self)
@@ -419,7 +415,7 @@ class _Model:
         work = found["work_of_adhesion"]
         solve = partial(adhesion.solve, work_of_adhesion=work) if work else normal.solve
         deepest = max(float(self.depth.max()) - found["contact_point"], 0.0)
-        contact = solve(self.profile, material, indentation_depth=deepest, rtol=rtol)
+        contact = solve(self.profile, material, indentation_depth=deepest)
         condition = float(np.linalg.norm(inverse, 2))
         sigma = noise or scatter
         return Fit(

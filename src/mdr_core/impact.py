@@ -108,7 +108,7 @@ class Impact(validity.ContactResults):
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        return self.normal.warnings_with(self.rtol, self.error_estimate)
+        return self.normal.warnings_with(self.error_estimate, self.rtol)
 
 
 class _Motion(NamedTuple):

@@ -15,9 +15,13 @@ class Results:
     quantities: ClassVar[tuple[str, ...]] = ()
     about: ClassVar[tuple[str, ...]] = ("method", "error_estimate", "model_error", "warnings")
 
+    def computed(self) -> dict[str, Any]:
+        """Return the quantities by name, as they were computed."""
+        return {name: getattr(self, name) for name in self.quantities}
+
     def values(self) -> dict[str, Any]:
-        """Return the quantities by name."""
-        return {name: _plain(getattr(self, name)) for name in self.quantities}
+        """Return the quantities by name, a single number without a dimension."""
+        return {name: _plain(value) for name, value in self.computed().items()}
 
     def to_dict(self) -> dict[str, Any]:
         """Return every result by name, as the HTTP service names it.

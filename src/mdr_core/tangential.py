@@ -61,9 +61,9 @@ class TangentialContact(validity.ContactResults):
         "regime",
     )
 
-    def values(self) -> dict[str, Any]:
-        """Return the quantities by name, those of the normal contact among them."""
-        return self.normal.values() | super().values()
+    def computed(self) -> dict[str, Any]:
+        """Return the quantities by name, with the quantities of the normal contact."""
+        return self.normal.computed() | super().computed()
 
     @cached_property
     def _coordinate(self) -> Array:
@@ -257,7 +257,7 @@ class TangentialContact(validity.ContactResults):
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        return self.normal.warnings_with(self.normal.rtol, self.error_estimate)
+        return self.normal.warnings_with(self.error_estimate)
 
 
 def solve(

@@ -8,6 +8,7 @@ Source: notes, §8.
 """
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import cached_property
 from typing import Final, NamedTuple, Protocol
 
 import numpy as np
@@ -118,13 +119,13 @@ class ContactResults(Results):
         """Contact on which the validity depends."""
         return self
 
-    @property
+    @cached_property
     def warnings(self: SolvedContact) -> tuple[Notice, ...]:
         """Warnings; where the bodies are unknown, for Poisson's ratio 0.3 on a rigid body."""
         found = findings(self.solved, self.solved.normal.material)
         return (*notices(found), *self.warnings_without_bodies)
 
-    @property
+    @cached_property
     def model_error(self: SolvedContact) -> Array:
         """Estimated relative error of the model in each case [1]; see `validity.model_error`."""
         return model_error(self.solved, self.solved.normal.material)

@@ -12,17 +12,12 @@ from pydantic import ValidationError
 
 from mdr_core.errors import InputError
 from mdr_service import problems
+from mdr_service.batch import BatchItem, BatchQuery
 from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
 from mdr_service.query_parameters import PARAMETERS
-from mdr_service.schemas.batch import BatchItem, BatchQuery
 from mdr_service.schemas.contacts import Query
-from mdr_service.schemas.fits import FitQuery
-from mdr_service.schemas.impacts import ImpactQuery
 from mdr_service.schemas.profiles import SeriesProfile
-from mdr_service.schemas.queries import SCHEMAS
-from mdr_service.schemas.subsurface import SubsurfaceQuery
-from mdr_service.schemas.wear import EvolutionQuery
 from mdr_service.serializers import JSON, PICTURES, WRITE, write_json
 from mdr_service.serializers.picture import AS_USUAL, Appearance
 from mdr_service.settings import SETTINGS
@@ -33,13 +28,13 @@ _logger: Final = logging.getLogger(__name__)
 _MAX_NUMBERS_ON_LOOP, _PER_LOAD = 1_100, 10
 
 
-def is_short(query: Query) -> bool:
+def is_short(name: str, query: Query) -> bool:
     """Return True if a query runs on the event loop, for which all other requests wait.
 
     Any other runs in a compute process, for at most `budget_seconds`.
     """
     is_slow = (
-        isinstance(query, SubsurfaceQuery | EvolutionQuery | ImpactQuery | FitQuery)
+        QUERIES[name].is_long
         or query.profile.kind == "tabulated"
         or query.material.has("yield_strength")
         or query.material.has("work_of_adhesion")
@@ -61,7 +56,7 @@ def respond(
 
     Parameters
     ----------
-    name : name of the query, a key of `SCHEMAS`, or ``batch``.
+    name : name of the query, a key of `QUERIES`, or ``batch``.
     query : the request, or its text or the parameters that stand for it, which are first parsed.
     media_type : media type of the content.
     appearance : size and units of a picture.
@@ -72,13 +67,13 @@ def respond(
     InputError, AccuracyError, ServiceError, ValidationError : the query has no result.
     """
     if isinstance(query, bytes):
-        model: type[Query | BatchQuery] = BatchQuery if name == "batch" else SCHEMAS[name].model
+        model: type[Query | BatchQuery] = BatchQuery if name == "batch" else QUERIES[name].request
         query = model.model_validate_json(query)
     elif isinstance(query, dict):
         query = PARAMETERS[name].model_validate(query).query()
     if isinstance(query, BatchQuery):
         _require_few_numbers(query)
-        return b'{"answers":[' + b",".join(map(_entry, query.queries)) + b"]}"
+        return b'{"answers":[' + b",".join(map(_entry, query.entries)) + b"]}"
     # Complete results are checked for overflow.
     with np.errstate(all="ignore"):
         kind = QUERIES[name]
@@ -98,8 +93,8 @@ def respond(
 def _require_few_numbers(batch: BatchQuery) -> None:
     """Raise ServiceError if the responses would hold more numbers than a single one may."""
     numbers, most = 0, SETTINGS.max_numbers
-    for index, item in enumerate(batch.queries):
-        if isinstance(item.query, Query):
+    for index, item in enumerate(batch.entries):
+        if isinstance(item, BatchItem) and isinstance(item.query, Query):
             own = max(item.query.loads, item.query.numbers)
             # A query that is too large alone is rejected alone.
             numbers += own if own <= most else 0
@@ -109,9 +104,11 @@ def _require_few_numbers(batch: BatchQuery) -> None:
             raise problems.invalid([(place, detail)])
 
 
-def _entry(item: BatchItem) -> bytes:
-    if isinstance(item.query, ValidationError):
-        return _problem(problems.from_validation(item.query))
+def _entry(item: BatchItem | ValidationError) -> bytes:
+    if isinstance(item, ValidationError):
+        return _problem(problems.from_validation(item, BatchItem))
+    if not isinstance(item.query, Query):
+        return _problem(problems.to_problem(item.query))
     try:
         content = respond(item.ask, item.query, JSON)
     except problems.FAILURES as error:

@@ -5,9 +5,9 @@ from typing import Any, Final
 
 from fastapi import FastAPI
 
+from mdr_service.queries import QUERIES
 from mdr_service.schemas.answers import Problem
 from mdr_service.schemas.examples import ANSWERS, EXAMPLES
-from mdr_service.schemas.queries import SCHEMAS
 
 DESCRIPTION: Final = """\
 Contact mechanics of axisymmetric bodies by the method of dimensionality reduction.
@@ -79,8 +79,8 @@ def extend(app: FastAPI) -> None:
         document = generate()
         schemas = document["components"]["schemas"]
         # The service validates each request of a batch alone, so that its model has any object.
-        _refer(schemas["BatchItem"], "request", [query.model for query in SCHEMAS.values()])
-        _refer(schemas["BatchItemAnswer"], "answer", [query.answer for query in SCHEMAS.values()])
+        _refer(schemas["BatchItem"], "request", [kind.request for kind in QUERIES.values()])
+        _refer(schemas["BatchItemAnswer"], "answer", [kind.response for kind in QUERIES.values()])
         for name in schemas.keys() - {"Settings", Problem.__name__}:
             _describe_defaults(schemas[name])
             for needed in schemas[name].get("dependentRequired", {}).values():

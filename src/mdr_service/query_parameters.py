@@ -19,12 +19,12 @@ from mdr_core.errors import InputError
 from mdr_core.validation import FINITE
 from mdr_service import problems
 from mdr_service.content_negotiation import ResponseParameters
+from mdr_service.queries import QUERIES
 from mdr_service.schemas import contacts
 from mdr_service.schemas.flat import leaves, nested
 from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.profiles import OF_NUMBERS
 from mdr_service.schemas.quantities import quantity
-from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.sentences import NUMBER
 from mdr_service.settings import SETTINGS
 
@@ -226,7 +226,6 @@ def _parameters(model: type[contacts.Query]) -> type[Parameters]:
 
 
 PARAMETERS: Final = {
-    name: _parameters(SCHEMAS[name].model)
-    for name in ("normal", "tangential", "history", "stress", "wear")
+    name: _parameters(kind.request) for name, kind in QUERIES.items() if kind.by_parameters
 }
 """Parameters of the queries that consist of numbers, by query."""

@@ -11,11 +11,11 @@ from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
 from mdr_core.validation import BODIES, FINITE, POSITIVE, not_negative
-from mdr_service.schemas.batch import BatchQuery
+from mdr_service.batch import BatchQuery
+from mdr_service.queries import QUERIES
 from mdr_service.schemas.contacts import Choice
 from mdr_service.schemas.profiles import MODELS, OF_NUMBERS
 from mdr_service.schemas.quantities import BRANCHES
-from mdr_service.schemas.queries import SCHEMAS
 
 Path = tuple[str | int, ...]
 _Model = type[BaseModel]
@@ -53,7 +53,7 @@ _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     ("too_short", "bodies"): BODIES,
 }
 _BOUNDS: Final = {"ge": "at least", "gt": "greater than", "le": "at most", "lt": "less than"}
-_MODELS: Final[Sequence[_Model]] = (BatchQuery, *(query.model for query in SCHEMAS.values()))
+_MODELS: Final[Sequence[_Model]] = (BatchQuery, *(kind.request for kind in QUERIES.values()))
 _REQUESTS: Final = {model.__name__: model for model in _MODELS}
 
 

@@ -12,9 +12,9 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
+from mdr_service.queries import QUERIES
 from mdr_service.schemas.flat import leaves
 from mdr_service.schemas.quantities import SMALLEST
-from mdr_service.schemas.queries import SCHEMAS
 from mdr_sweep.spec import Spec
 
 Values = NDArray[np.float64]
@@ -84,7 +84,7 @@ def field(query: str, name: str) -> Field | None:
 def _fields(query: str) -> Mapping[str, Field]:
     """Return the fields of a request model, as its JSON schema describes them."""
     found: dict[str, Field] = {}
-    for name, leaf in leaves(SCHEMAS[query].model.model_json_schema()):
+    for name, leaf in leaves(QUERIES[query].request.model_json_schema()):
         # A load takes a number or a list; a case of a sweep has one number.
         if name not in _OVER_RADIUS and not (name in found and leaf["type"] == "array"):
             low, high = leaf.get("minimum", -inf), leaf.get("maximum", inf)

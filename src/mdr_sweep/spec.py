@@ -4,19 +4,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from importlib.metadata import version
-from typing import Any, Final, get_args
+from typing import Any, Final
 
 from mdr_core import __version__
-from mdr_service.queries.contacts import members
-from mdr_service.schemas.answers import NormalAnswer, TangentialAnswer, WearAnswer
-from mdr_service.schemas.wear import WearField
+from mdr_core.profiles.base import NORMAL_QUANTITIES
+from mdr_core.tangential import TangentialContact
+from mdr_core.wear.limit import LimitingWear
 
+_NORMAL: Final = tuple(name for name in NORMAL_QUANTITIES if name != "maximum_pressure")
 PULL_OFF: Final = ("pull_off_force", "pull_off_depth", "retraction")
 """Quantities of adhesive contacts alone."""
 QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
-    "normal": members(NormalAnswer, ["maximum_pressure", "data_error", *PULL_OFF]),
-    "tangential": members(TangentialAnswer, ["maximum_pressure", "data_error"]),
-    "wear": members(WearAnswer, ["radius", *get_args(WearField)]),
+    "normal": _NORMAL,
+    "tangential": (*_NORMAL, *TangentialContact.quantities),
+    "wear": LimitingWear.quantities,
 }
 """Quantities that a sweep computes unless some are named, by query."""
 ONLY_IF_NAMED: Final[Mapping[str, tuple[str, ...]]] = {

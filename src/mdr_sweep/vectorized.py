@@ -4,6 +4,7 @@ Cases that the call does not solve are solved one by one.
 """
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from math import nan
 from typing import Any, Final
 
@@ -13,15 +14,14 @@ from numpy.typing import NDArray
 
 from mdr_core import normal, tangential, validity
 from mdr_core.errors import InputError
-from mdr_core.normal import NormalContact
+from mdr_core.normal import ACCURACY, NormalContact
 from mdr_core.profiles import KINDS
 from mdr_core.tangential import TangentialContact
 from mdr_service import problems
 from mdr_service.queries import QUERIES
-from mdr_service.queries.contacts import body, control, findings, friction
+from mdr_service.queries.contacts import body, control, friction, yields
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.flat import nested
-from mdr_service.schemas.queries import SCHEMAS
 from mdr_sweep.request_columns import Column, Values, read_columns
 from mdr_sweep.spec import ERROR, TEXTS, WARNING, Spec
 
@@ -129,10 +129,14 @@ def _call(
         parameters = {name: given.get(name, getattr(query.profile, name)) for name in names}
         given["profile"] = KINDS[query.profile.kind](**parameters)
 
+    moduli = {name: given.pop(name) for name in ("e_star", "g_star") if name in given}
+    if moduli:
+        given |= dict.fromkeys(("e_star", "g_star"), replace(query.material.effective, **moduli))
+
     def with_arrays(constants: dict[str, Any]) -> dict[str, Any]:
         return {name: given.get(name, value) for name, value in constants.items()}
 
-    contact = normal.solve(**with_arrays(body(query) | control(query.load)), rtol=query.rtol)
+    contact = normal.solve(**with_arrays(body(query) | control(query.load)))
     source: NormalContact | TangentialContact = contact
     if isinstance(query, TangentialQuery):
         source = tangential.solve(
@@ -142,11 +146,7 @@ def _call(
     # Overflow, and infinite pressures, are solved one by one.
     solved = np.array(np.broadcast_to(np.isfinite(contact.mean_pressure), (size,)))
     for name in spec.quantities:
-        if name == "model_error":
-            # That of a contact alone does not know the bodies.
-            values: Any = validity.model_error(source, query.material.effective)
-        else:
-            values = getattr(source if hasattr(type(source), name) else contact, name)
+        values: Any = getattr(source if hasattr(type(source), name) else contact, name)
         if values is None:
             # Nothing is left open by data.
             results[name] = np.full(size, nan)
@@ -162,15 +162,16 @@ def _warnings(
 ) -> NDArray[Any]:
     """Return the codes of the warnings of each case, in the order of the service."""
     contact = source.normal
-    flags: dict[str, Any] = {each.code: each.where for each in findings(query, source)}
+    found = [*validity.findings(source, contact.material), *yields(query, source)]
+    flags: dict[str, Any] = {each.code: each.where for each in found}
     flags |= {notice.code: True for notice in contact.profile.notices}
     flags |= {each.code: each.where for each in contact.findings}
-    flags["accuracy"] = source.error_estimates > query.rtol
-    found = np.full(size, None)
+    flags["accuracy"] = source.error_estimates > ACCURACY
+    codes = np.full(size, None)
     for code, where in flags.items():
         here = np.broadcast_to(where, (size,))
-        found[here] = [f"{known} {code}" if known else code for known in found[here]]
-    return found
+        codes[here] = [f"{known} {code}" if known else code for known in codes[here]]
+    return codes
 
 
 def _solve_alone(spec: Spec, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -198,4 +199,4 @@ def _solve_alone(spec: Spec, given: Mapping[str, Any]) -> dict[str, Any]:
 
 def _validated(spec: Spec, given: Mapping[str, Any]) -> Query:
     """Return the request with the given fields; raise InputError or ValidationError."""
-    return SCHEMAS[spec.query].model.model_validate(nested(given))
+    return QUERIES[spec.query].request.model_validate(nested(given))

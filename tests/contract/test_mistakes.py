@@ -182,7 +182,7 @@ IN_PYTHON: dict[str, tuple[Callable[[], Any], list[str]]] = {
         ["poissons_ratio", "number", "not str"],
     ),
     "an accuracy as text": (
-        lambda: mdr.normal.solve(mdr.Paraboloid(1), PAIR, normal_force=1, rtol="1e-3"),
+        lambda: impact(rtol="1e-3"),
         ["rtol", "number", "not str"],
     ),
     "a yield criterion by another name": (

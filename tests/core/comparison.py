@@ -49,7 +49,7 @@ def stored(name: str) -> Any:
 def contact_of(case: Mapping[str, Any]) -> NormalContact:
     """Return the normal contact of a case of a bank."""
     load = {case["control"]: case["load"]}
-    return solve(profile_from(case["profile"]), case["e_star"], rtol=1e-13, **load)
+    return solve(profile_from(case["profile"]), case["e_star"], **load)
 
 
 def bound_of(case: Mapping[str, Any], bound: float) -> float:

@@ -110,8 +110,8 @@ def superposed(
             r.append(end + (at - end) * s * s)
             mass.append(np.abs(at - end) * s * weights)
     radius, shares = np.concatenate(r), np.concatenate(mass)
-    p = fields.pressure(contact, radius, rtol=1e-13)
-    tau = fields.shear_stress(partial, radius, rtol=1e-13)
+    p = fields.pressure(contact, radius)
+    tau = fields.shear_stress(partial, radius)
     angle = 2 * pi * np.arange(96) / 96
     around = 2 * pi / 96 * (radius * shares)[:, None]
     total = []

@@ -67,7 +67,7 @@ def kind_of(profile: Profile) -> str:
 def constant_depth_limit(profile: Profile, displacement: Any, depth: float | None = None) -> Any:
     """Contact radius 1 unless a depth is given; the amplitude is a fraction of u_max."""
     d = float(profile.g(np.array([1.0]))[0]) if depth is None else depth
-    contact = normal.solve(profile, E_STAR, indentation_depth=d, rtol=1e-13)
+    contact = normal.solve(profile, E_STAR, indentation_depth=d)
     amplitude = np.asarray(displacement) * (MU * E_STAR / G_STAR * d)
     return limit.solve(contact, G_STAR, MU, tangential_displacement=amplitude)
 

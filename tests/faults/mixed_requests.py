@@ -10,8 +10,8 @@ from pathlib import Path
 
 import psutil
 
+from mdr_service.queries import QUERIES
 from mdr_service.schemas.examples import EXAMPLES
-from mdr_service.schemas.queries import SCHEMAS
 from tests.contract import strict_json
 from tests.faults.figures import MEBIBYTE, Row, say
 from tests.faults.load import Client, ResetError, Response, clients, request
@@ -19,8 +19,8 @@ from tests.faults.load import Client, ResetError, Response, clients, request
 DOCUMENT = json.loads((Path(__file__).parents[2] / "openapi.json").read_text("utf-8"))
 # Without the evolution, which takes a second.
 REQUESTS = [
-    (schema.path, json.dumps(each["value"]).encode())
-    for name, schema in SCHEMAS.items()
+    (kind.path, json.dumps(each["value"]).encode())
+    for name, kind in QUERIES.items()
     if name != "evolution"
     for each in EXAMPLES[name].values()
 ]

@@ -54,11 +54,9 @@ class Contact(NamedTuple):
 
 
 def contact(random: Random, kind: str | None = None) -> Contact:
-    """Return a profile, a material and a tolerance, with suitable loads."""
+    """Return a profile and a material, with suitable loads."""
     case, moduli = profile(random, kind), material(random)
     query: dict[str, Any] = {"profile": case.profile, "material": moduli.material}
-    if random.random() < 0.5:
-        query["rtol"] = 10.0 ** -random.choice((3, 4, 6, 8, 10, 12, 13, random.uniform(3, 13)))
     lift = case.height(case.radius)
     depth = random.uniform(1.05, 1.6) * lift if lift else case.radius * spread(random, 1e-6, 1e-2)
     # A foundation compressed by d - g carries at most 2 E* a d, a cone half of that.
@@ -329,7 +327,6 @@ def wear(random: Random, kind: str | None = None) -> dict[str, Any]:
 def evolution(random: Random, kind: str | None = None) -> dict[str, Any]:
     """Return a query of fretting wear over the cycles."""
     scene = contact(random, kind)
-    scene.query.pop("rtol", None)
     load = {
         control: _values({control: value})[0]
         for control, value in _load(random, scene, ("indentation_depth", "normal_force")).items()

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from mdr_service.app import create_app
-from mdr_service.schemas.queries import SCHEMAS
+from mdr_service.queries import QUERIES
 
-PATHS: Final = {name: schema.path for name, schema in SCHEMAS.items()}
+PATHS: Final = {name: kind.path for name, kind in QUERIES.items()}
 SECONDS: Final = 10.0
 """CPU time limit of one request."""
 

@@ -200,7 +200,7 @@ HISTORIES = {
     **{name: FRICTION[name] for name in ("material", "friction_coefficient")},
 }
 # Each step of a nonlinear path is subdivided, so use profiles without iteration.
-SHORT_HISTORIES = HISTORIES | {"profile": simple(), "rtol": st.just(1e-3)}
+SHORT_HISTORIES = HISTORIES | {"profile": simple()}
 LINEAR_HISTORIES = st.fixed_dictionaries(HISTORIES | {"history": histories(STRAIGHT)}) | (
     st.fixed_dictionaries(HISTORIES | {"cycles": cycles(STRAIGHT)})
 )
@@ -227,7 +227,7 @@ MANY = LOADS | st.lists(LOADS, min_size=1, max_size=4)
 ORDINARY_POWERS = st.fixed_dictionaries(
     {"kind": st.just("power"), "coefficient": st.floats(1e-3, 1e3), "exponent": st.floats(0.5, 20)}
 )
-WEAR = {"profile": simple() | tables() | ORDINARY_POWERS, "rtol": st.just(1e-3)} | {
+WEAR = {"profile": simple() | tables() | ORDINARY_POWERS} | {
     name: FRICTION[name] for name in ("material", "friction_coefficient")
 }
 LIMITS = st.builds(

@@ -6,19 +6,18 @@ from collections.abc import Sequence
 import httpx
 import pytest
 
+from mdr_service.batch import BatchAnswer
 from mdr_service.dispatch import respond
 from mdr_service.problems import MEDIA_TYPE
 from mdr_service.queries import QUERIES
-from mdr_service.schemas.batch import BatchAnswer
 from mdr_service.schemas.examples import EXAMPLES
-from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.service.test_formats import BALL, CASES
 from tests.service.test_wrong_input import WRONG, changed
 
-NAMES = {schema.path: name for name, schema in SCHEMAS.items()}
+NAMES = {kind.path: name for name, kind in QUERIES.items()}
 LOADS = [1.0 + load for load in range(100)]
 HISTORY = next(query for _, name, query in CASES if name == "mindlin_deresiewicz")
 WRONG_QUERIES = [
@@ -71,13 +70,6 @@ def test_invalid_query_of_a_batch_has_its_own_problem(
         ({}, "/queries"),
         ({"queries": []}, "/queries"),
         ({"queries": {}}, "/queries"),
-        ({"queries": [5]}, "/queries/0"),
-        ({"queries": [{"ask": "normal"}]}, "/queries/0/request"),
-        ({"queries": [{"request": BALL}]}, "/queries/0/ask"),
-        ({"queries": [{"ask": "normal", "request": BALL}, {"ask": "x"}]}, "/queries/1/ask"),
-        ({"queries": [{"ask": "normal", "request": [BALL]}]}, "/queries/0/request"),
-        ({"queries": [{"ask": "normal", "request": None}]}, "/queries/0/request"),
-        ({"queries": [{"ask": "normal", "request": BALL, "id": 1}]}, "/queries/0/id"),
         ({"queries": [{"ask": "normal", "request": BALL}], "n": 1}, "/n"),
         ({"queries": [{"ask": "normal", "request": {}}] * (SETTINGS.max_batch + 1)}, "/queries"),
     ],
@@ -88,6 +80,32 @@ def test_invalid_batch_is_rejected_as_a_whole(client: Client, body: object, poin
     assert response.status_code == 422
     assert response.headers["content-type"] == MEDIA_TYPE
     assert response.json()["errors"][0]["pointer"] == pointer
+
+
+@pytest.mark.parametrize(
+    ("entry", "pointer"),
+    [
+        (5, ""),
+        ({"ask": "normal"}, "/request"),
+        ({"request": BALL}, "/ask"),
+        ({"ask": "x", "request": BALL}, ""),
+        ({"ask": "normal", "request": [BALL]}, "/request"),
+        ({"ask": "normal", "request": None}, "/request"),
+        ({"ask": "normal", "request": BALL, "id": 1}, "/id"),
+    ],
+    ids=lambda value: str(value)[:60],
+)
+def test_invalid_entry_has_a_problem_beside_the_answers(
+    client: Client, entry: object, pointer: str
+) -> None:
+    right = {"ask": "normal", "request": BALL}
+    response = client.post("/v1/batch", {"queries": [right, entry, right]})
+    assert response.status_code == 200
+    first, bad, last = response.json()["answers"]
+    assert first == last
+    assert first["status"] == 200
+    assert bad["status"] == 422
+    assert bad["problem"]["errors"][0]["pointer"] == pointer
 
 
 def test_numbers_of_a_batch_are_limited_in_total(client: Client) -> None:

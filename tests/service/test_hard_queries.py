@@ -6,15 +6,15 @@ from typing import Any
 
 import pytest
 
+from mdr_service import queries
 from mdr_service.problems import MEDIA_TYPE
-from mdr_service.schemas.queries import SCHEMAS
 from tests.conftest import Client
 from tests.contract import strict_json
 
 QUERIES: dict[str, Any] = json.loads(
     Path(__file__).with_name("data").joinpath("hard_queries.json").read_text("utf-8")
 )
-ENDPOINTS = {name: schema.path for name, schema in SCHEMAS.items()}
+ENDPOINTS = {name: kind.path for name, kind in queries.QUERIES.items()}
 
 
 @pytest.mark.parametrize(

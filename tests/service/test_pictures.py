@@ -20,7 +20,6 @@ from mdr_service.dispatch import respond
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.examples import EXAMPLES
 from mdr_service.schemas.fields import FieldName
-from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.schemas.subsurface import SubsurfaceName
 from mdr_service.schemas.wear import WearField
 from mdr_service.serializers.panels import Units
@@ -169,7 +168,7 @@ def test_points_are_the_numbers_of_the_response(
 def test_every_quantity_has_a_label_with_its_unit(
     name: str, query: dict[str, Any], quantities: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    model = SCHEMAS[name].answer.model_json_schema()["properties"]
+    model = QUERIES[name].response.model_json_schema()["properties"]
     units = {"length": "mm", "pressure": "MPa", "force/length": "N/mm"}
     request = query | {"quantities": list(quantities)}
     figure = drawn(name, request, monkeypatch, Appearance(units=MILLIMETRES))

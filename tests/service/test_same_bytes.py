@@ -28,9 +28,8 @@ def queries(draw: st.DrawFn) -> Query:
     }
     material = {"e_star": draw(LENGTHS), "g_star": draw(LENGTHS)}
     load = {draw(st.sampled_from(NORMAL_LOADS[: 2 if name == "wear" else 3])): draw(LOADS)}
-    tolerance = {"rtol": draw(st.sampled_from([1e-3, 1e-6]))}
-    request = {"profile": profile, "material": material, "load": load} | tolerance
-    parameters = {**profile, **material, **load, **tolerance}
+    request = {"profile": profile, "material": material, "load": load}
+    parameters = {**profile, **material, **load}
     if name != "normal":
         friction = {"friction_coefficient": draw(st.floats(1e-3, 10.0))}
         tangential = {

@@ -7,9 +7,8 @@ import pytest
 
 from mdr_core import profiles
 from mdr_service.dispatch import respond
-from mdr_service.queries import contacts
+from mdr_service.queries import QUERIES, contacts
 from mdr_service.schemas.profiles import TabulatedProfile
-from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS
 from tests.conftest import Client
 
@@ -53,7 +52,7 @@ def test_cached_table_gives_identical_bytes(name: str) -> None:
         request[member] = {"tangential_force": 0.2}
     if name == "stress":
         request |= {"points": 20, "quantities": ["pressure", "shear_stress"]}
-    query = SCHEMAS[name].model.model_validate_json(json.dumps(request).encode())
+    query = QUERIES[name].request.model_validate_json(json.dumps(request).encode())
     contacts._by_parameters.cache_clear()
     first = respond(name, query, FORMATS["json"])
     assert contacts._by_parameters.cache_info().misses == 1

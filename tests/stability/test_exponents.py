@@ -15,7 +15,6 @@ from mdr_core.profiles import Power
 from tests.stability.curves import (
     CLOSED,
     ROUNDING,
-    RTOL,
     Array,
     Curve,
     attempt,
@@ -42,7 +41,7 @@ def naive_kappa(n: float) -> float:
 
 
 def contacts(exponents: Array, **load: float) -> list[normal.NormalContact]:
-    return [normal.solve(Power(C, float(n)), 1.0, rtol=RTOL, **load) for n in exponents]
+    return [normal.solve(Power(C, float(n)), 1.0, **load) for n in exponents]
 
 
 def distance_from_limit(name: str, exponents: Array) -> tuple[str, Array]:
@@ -126,10 +125,7 @@ def pressure(name: str, exponents: Array) -> Curve:
         "40 Gauss points in √(x²−r²), Γ(n/2+1)/Γ((n+1)/2)",
         distances,
         (
-            [
-                float(fields.pressure(one, [R], rtol=RTOL)[0])
-                for one in contacts(exponents, contact_radius=A)
-            ],
+            [float(fields.pressure(one, [R])[0]) for one in contacts(exponents, contact_radius=A)],
             attempt(naive, exponents),
             references(exact, exponents),
         ),
@@ -158,7 +154,7 @@ def slip(name: str, exponents: Array) -> Curve:
         "∫ g/√(r²−x²) dx by quad",
         distances,
         (
-            [-float(fields.slip(one, [R], rtol=RTOL)[0]) for one in pushed],
+            [-float(fields.slip(one, [R])[0]) for one in pushed],
             attempt(naive, exponents),
             references(lambda n: mpf(C) * mpf(R) ** n, exponents),
         ),

@@ -18,7 +18,7 @@ from mdr_core import fields, normal, tangential
 from tests.core.comparison import profile_from
 from tests.oracles.reference import state
 from tests.oracles.shapes import shape_of
-from tests.stability.curves import CLOSED, ROUNDING, RTOL, Curve, attempt, curve, steps
+from tests.stability.curves import CLOSED, ROUNDING, Curve, attempt, curve, steps
 
 if TYPE_CHECKING:
     from mdr_core.profiles import Profile
@@ -46,7 +46,7 @@ def force(kind: str) -> Curve:
     for unit in UNITS:
         shape, load, e_star = scaled(kind, unit), DEPTH * unit, MODULUS / unit
         exact = state(shape, "indentation_depth", load, e_star)
-        contact = normal.solve(profile_from(shape), e_star, indentation_depth=load, rtol=RTOL)
+        contact = normal.solve(profile_from(shape), e_star, indentation_depth=load)
         result.append(float(contact.normal_force))
         truth.append(exact.values["normal_force"])
         conditions.append(float(exact.condition["normal_force"]))
@@ -82,7 +82,7 @@ def test_results_are_unit_independent(kind: str) -> None:
 
 
 def tangential_contact(profile: Profile, unit: float) -> tangential.TangentialContact:
-    contact = normal.solve(profile, MODULUS / unit, indentation_depth=DEPTH * unit, rtol=RTOL)
+    contact = normal.solve(profile, MODULUS / unit, indentation_depth=DEPTH * unit)
     return tangential.solve(
         contact, 0.8 * MODULUS / unit, MU, tangential_displacement=0.2 * DEPTH * unit
     )

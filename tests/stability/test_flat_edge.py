@@ -15,7 +15,6 @@ from mdr_core.profiles import RoundedPunch, TruncatedCone, TruncatedParaboloid
 from tests.stability.curves import (
     CLOSED,
     ROUNDING,
-    RTOL,
     Curve,
     attempt,
     curve,
@@ -36,7 +35,7 @@ def root(a: mpf) -> mpf:
 
 def depth() -> Curve:
     """d = (a/R) (s - b arccos(b/a)), Eq. (5.59)."""
-    contact = normal.solve(RoundedPunch(B, BIG), 1.0, contact_radius=EDGES, rtol=RTOL)
+    contact = normal.solve(RoundedPunch(B, BIG), 1.0, contact_radius=EDGES)
     return curve(
         "flat-edge-depth",
         "depth of a rounded punch, b → a",
@@ -53,7 +52,7 @@ def depth() -> Curve:
 
 def force() -> Curve:
     """F/E* = [s^3 + 3 a^2 (s - b arccos(b/a))]/(3R), Eq. (5.61)."""
-    contact = normal.solve(RoundedPunch(B, BIG), 1.0, contact_radius=EDGES, rtol=RTOL)
+    contact = normal.solve(RoundedPunch(B, BIG), 1.0, contact_radius=EDGES)
 
     def naive(a: float) -> float:
         s = np.sqrt(a**2 - B**2)
@@ -74,7 +73,7 @@ def force() -> Curve:
 
 def truncated_cone() -> Curve:
     """d = t a arccos(b/a), with an argument close to one."""
-    contact = normal.solve(TruncatedCone(B, SLOPE), 1.0, contact_radius=EDGES, rtol=RTOL)
+    contact = normal.solve(TruncatedCone(B, SLOPE), 1.0, contact_radius=EDGES)
     return curve(
         "flat-edge-truncated-cone",
         "depth of a truncated cone, b → a",
@@ -95,7 +94,7 @@ def stiffness_by_depth() -> Curve:
     Force at that depth: 2 b d to first order, plus the contribution of the rounding from s.
     """
     depths = steps(0.5, 1e-24, 40)
-    contact = normal.solve(RoundedPunch(B, BIG), 1.0, indentation_depth=depths, rtol=RTOL)
+    contact = normal.solve(RoundedPunch(B, BIG), 1.0, indentation_depth=depths)
 
     def exact(d: mpf) -> mpf:
         guess = mp.cbrt(3 * d * mpf(BIG))
@@ -139,11 +138,7 @@ def pressure(kind: str, limit: Any) -> Curve:
     }
     r = 0.3
     ours = [
-        float(
-            fields.pressure(
-                normal.solve(profiles[kind](b), 1.0, contact_radius=1.0, rtol=RTOL), [r], rtol=RTOL
-            )[0]
-        )
+        float(fields.pressure(normal.solve(profiles[kind](b), 1.0, contact_radius=1.0), [r])[0])
         for b in limit
     ]
 

@@ -15,7 +15,6 @@ from mdr_core.wear import evolution, limit
 from tests.stability.curves import (
     CLOSED,
     ROUNDING,
-    RTOL,
     Array,
     Curve,
     attempt,
@@ -37,7 +36,7 @@ def amplitudes(end: str) -> Array:
 
 @cache
 def limits(end: str) -> limit.LimitingWear:
-    contact = normal.solve(Paraboloid(BIG), 1.0, indentation_depth=DEPTH, rtol=RTOL)
+    contact = normal.solve(Paraboloid(BIG), 1.0, indentation_depth=DEPTH)
     return limit.solve(contact, 1.0, MU, tangential_displacement=amplitudes(end))
 
 

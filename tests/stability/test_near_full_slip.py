@@ -16,7 +16,6 @@ from tests.oracles.slip_reference import Material, setting, solve
 from tests.stability.curves import (
     CLOSED,
     ROUNDING,
-    RTOL,
     Curve,
     attempt,
     curve,
@@ -40,7 +39,7 @@ def hertz() -> Curve:
     """Hertz: c = a (1 - F_x/(mu F_N))^(1/3). The naive root finder uses an absolute tolerance."""
     limit = MU * FORCE
     given = representable_loads(limit)
-    contact = normal.solve(Paraboloid(BIG), 1.0, normal_force=FORCE, rtol=RTOL)
+    contact = normal.solve(Paraboloid(BIG), 1.0, normal_force=FORCE)
     result = tangential.solve(contact, 1.0, MU, tangential_force=given)
 
     def exact(force: mpf) -> mpf:
@@ -66,7 +65,7 @@ def displacement() -> Curve:
     """Cone: c = a (1 - u_x/u_max) for prescribed displacement and contact radius."""
     limit = MU * pi / 2 * SLOPE
     given = representable_loads(limit)
-    contact = normal.solve(Cone(SLOPE), 1.0, contact_radius=1.0, rtol=RTOL)
+    contact = normal.solve(Cone(SLOPE), 1.0, contact_radius=1.0)
     result = tangential.solve(contact, 1.0, MU, tangential_displacement=given)
 
     def exact(u: mpf) -> mpf:
@@ -92,7 +91,7 @@ def dissipation_near_full_slip(
     name: str, profile: Profile, fields_: dict[str, Any], places: Any
 ) -> Curve:
     """Dissipated energy at a small prescribed stick radius; the load follows in closed form."""
-    contact = normal.solve(profile, 1.0, contact_radius=1.0, rtol=RTOL)
+    contact = normal.solve(profile, 1.0, contact_radius=1.0)
     first = fields_.get("flat_radius", 0.0)
     given = first + (1 - first) * places if first else places
     result = tangential.solve(contact, 1.0, MU, stick_radius=given)
@@ -150,7 +149,7 @@ def test_near_full_slip(name: str) -> None:
 @pytest.mark.parametrize("margin", [1e-3, 1e-6, 1e-9, 1e-12, 1e-15])
 def test_error_estimate_includes_load_rounding_near_full_slip(margin: float) -> None:
     """Near full slip, the estimate of a single load covers the rounding error of that load."""
-    contact = normal.solve(Paraboloid(BIG), 1.0, normal_force=FORCE, rtol=RTOL)
+    contact = normal.solve(Paraboloid(BIG), 1.0, normal_force=FORCE)
     force = MU * FORCE * (1 - margin)
     result = tangential.solve(contact, 1.0, MU, tangential_force=force)
     with mp.workdps(40):
@@ -161,12 +160,12 @@ def test_error_estimate_includes_load_rounding_near_full_slip(margin: float) -> 
 
 def test_traction_with_vanishing_stick_zone() -> None:
     """sqrt(a^2 - r^2) - sqrt(c^2 - r^2) down to the smallest significant c."""
-    contact = normal.solve(Paraboloid(BIG), 1.0, contact_radius=1.0, rtol=RTOL)
+    contact = normal.solve(Paraboloid(BIG), 1.0, contact_radius=1.0)
     for c in steps(0.1, 1e-140, 30):
         result = tangential.solve(contact, 1.0, 1.0, stick_radius=c)
         r = np.array([0.0, 0.5, 0.999999, 1.0, 1.5]) * c
         exact = references(_traction, r, np.full(r.shape, c))
-        there = fields.shear_stress(result, r, rtol=RTOL)
+        there = fields.shear_stress(result, r)
         assert there == pytest.approx([float(value) for value in exact], rel=CLOSED, abs=0)
 
 
@@ -197,5 +196,5 @@ def test_traction_with_a_stick_edge_just_beyond_a_flat(margin: float) -> None:
             return mp.quad(integrand, [low, high])
 
         expected = [float(exact(mpf(float(at)))) for at in r]
-    found = fields.shear_stress(result, r, rtol=RTOL)
+    found = fields.shear_stress(result, r)
     assert found == pytest.approx(expected, rel=1e-12, abs=0)

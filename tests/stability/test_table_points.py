@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 from mdr_core import normal
 from mdr_core.profiles import Tabulated
-from tests.stability.curves import RTOL, Array, Curve, curve, steps
+from tests.stability.curves import Array, Curve, curve, steps
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -53,7 +53,7 @@ def forces(
     ours, naive = [], []
     for value in values:
         r, f = points(value)
-        contact = normal.solve(Tabulated(r, f), 1.0, contact_radius=A, rtol=RTOL)
+        contact = normal.solve(Tabulated(r, f), 1.0, contact_radius=A)
         ours.append(float(contact.normal_force))
         naive.append(by_spline(r, f))
     formula = "∫ sin²t f′(a sin t) dt of a cubic spline of f"

@@ -15,7 +15,6 @@ from tests.core.comparison import profile_from
 from tests.core.evaluations import PROFILES
 from tests.stability.curves import (
     CLOSED,
-    RTOL,
     Curve,
     attempt,
     curve,
@@ -41,7 +40,7 @@ def by_depth(
     naive: tuple[str, Callable[[float], float]],
 ) -> Curve:
     """Force at prescribed depth; `force` evaluates it from the contact radius or from s."""
-    contact = normal.solve(profile, 1.0, indentation_depth=DEPTHS, rtol=RTOL)
+    contact = normal.solve(profile, 1.0, indentation_depth=DEPTHS)
     return curve(
         f"zero-load-{name}",
         title,

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
+from mdr_service.queries import QUERIES
 from mdr_service.queries.contacts import solve_tangential
 from mdr_service.schemas.flat import nested
-from mdr_service.schemas.queries import SCHEMAS
 from mdr_sweep import vectorized
 from mdr_sweep.spec import Spec
 from tests.conftest import Client
@@ -171,7 +171,7 @@ def test_maxima_of_stresses_equal_those_of_the_core(kind: str) -> None:
     for row, result in zip(rows, computed, strict=True):
         if result["error"]:
             continue
-        query: Any = SCHEMAS["tangential"].model.model_validate(nested(row))
+        query: Any = QUERIES["tangential"].request.model_validate(nested(row))
         pushed = solve_tangential(query)
         expected = (
             float(pushed.normal.contact_radius),

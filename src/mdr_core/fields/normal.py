@@ -21,7 +21,6 @@ from mdr_core.typing import Array
 from mdr_core.validation import (
     checked_radii,
     require_single_profile,
-    require_tolerance,
     require_type,
 )
 
@@ -31,7 +30,7 @@ Contact = NormalContact | TangentialContact
 Field = Callable[[int, Array], Array]
 
 
-def pressure(contact: Contact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
+def pressure(contact: Contact, radius: ArrayLike) -> Array:
     """Return p(r) = (E*/pi) int_r^a g'(x)/sqrt(x^2 - r^2) dx [pressure].
 
     Positive in compression, zero outside the contact, infinite at sharp tips, slope
@@ -45,8 +44,6 @@ def pressure(contact: Contact, radius: ArrayLike, *, rtol: float = 1e-10) -> Arr
     contact : contact of one profile, with or without friction, under any number of loads.
     radius : radii [length], >= 0, shape (m,). The pressure has a root at the contact radius: its
         relative error grows without bound within a few units in the last place of it.
-    rtol : accuracy required, 1e-13 to 1e-3. Integrals are as accurate as the tightest, whatever it
-        is.
 
     Returns
     -------
@@ -54,8 +51,8 @@ def pressure(contact: Contact, radius: ArrayLike, *, rtol: float = 1e-10) -> Arr
 
     Raises
     ------
-    InputError : a radius that is negative or not finite, an `rtol` out of range, or an array as a
-        parameter of the profile.
+    InputError : a radius that is negative or not finite, or an array as a parameter of the
+        profile.
 
     Examples
     --------
@@ -67,9 +64,8 @@ def pressure(contact: Contact, radius: ArrayLike, *, rtol: float = 1e-10) -> Arr
     >>> [float(f"{p:.6g}") for p in pressure(contact, [0.0, 0.06, 0.2])]
     [0.095493, 0.0763944, 0.0]
     """
-    require_tolerance(rtol)
     if isinstance(contact, AdhesiveContact):
-        return contact.superposed(lambda part: pressure(part, radius, rtol=rtol))
+        return contact.superposed(lambda part: pressure(part, radius))
     contact = _pressed(contact)
     shape = contact.contact_radius.shape
     a, coordinate = by_load(contact.profile, shape, contact.contact_radius, contact.coordinate)
@@ -82,7 +78,7 @@ def pressure(contact: Contact, radius: ArrayLike, *, rtol: float = 1e-10) -> Arr
     return fill(shape, values, radius)
 
 
-def normal_displacement(contact: Contact, radius: ArrayLike, *, rtol: float = 1e-10) -> Array:
+def normal_displacement(contact: Contact, radius: ArrayLike) -> Array:
     """Return the normal displacement of the surface, positive into the body [length].
 
     d - f(r) in the contact, (2/pi) int_0^a (d - g(x))/sqrt(r^2 - x^2) dx outside it.
@@ -93,8 +89,6 @@ def normal_displacement(contact: Contact, radius: ArrayLike, *, rtol: float = 1e
     ----------
     contact : contact of one profile, with or without friction, under any number of loads.
     radius : radii [length], >= 0, shape (m,).
-    rtol : accuracy required, 1e-13 to 1e-3. Integrals are as accurate as the tightest, whatever it
-        is.
 
     Returns
     -------
@@ -102,12 +96,11 @@ def normal_displacement(contact: Contact, radius: ArrayLike, *, rtol: float = 1e
 
     Raises
     ------
-    InputError : a radius that is negative or not finite, an `rtol` out of range, or an array as a
-        parameter of the profile.
+    InputError : a radius that is negative or not finite, or an array as a parameter of the
+        profile.
     """
-    require_tolerance(rtol)
     if isinstance(contact, AdhesiveContact):
-        return contact.superposed(lambda part: normal_displacement(part, radius, rtol=rtol))
+        return contact.superposed(lambda part: normal_displacement(part, radius))
     contact = _pressed(contact)
     profile, shape = contact.profile, contact.contact_radius.shape
     columns = contact.contact_radius, contact.coordinate, contact.indentation_depth

@@ -22,7 +22,7 @@ from mdr_core.history import ContactState
 from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
-from mdr_core.validation import require_tolerance, require_type
+from mdr_core.validation import require_type
 
 
 class Traction(NamedTuple):
@@ -79,9 +79,7 @@ class Traction(NamedTuple):
         return self.slope[i] * equivalent_1d.depth_step(self.profile, top, width, at)
 
 
-def shear_stress(
-    contact: TangentialContact | ContactState, radius: ArrayLike, *, rtol: float = 1e-10
-) -> Array:
+def shear_stress(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
     """Return tau(r) = (mu E*/pi) sum k_i int g'(x)/sqrt(x^2 - r^2) dx [pressure].
 
     The i-th integral goes over [max(r, x_i-1), x_i] between neighbouring slip fronts, under a
@@ -94,8 +92,6 @@ def shear_stress(
     ----------
     contact : tangential contact under any number of loads, or end of a load history.
     radius : radii [length], >= 0, shape (m,).
-    rtol : accuracy required, 1e-13 to 1e-3. Integrals are as accurate as the tightest, whatever it
-        is.
 
     Returns
     -------
@@ -103,8 +99,8 @@ def shear_stress(
 
     Raises
     ------
-    InputError : a radius that is negative or not finite, an `rtol` out of range, or an array as a
-        parameter of the profile.
+    InputError : a radius that is negative or not finite, or an array as a parameter of the
+        profile.
 
     Examples
     --------
@@ -118,13 +114,10 @@ def shear_stress(
     >>> bool(abs(shear_stress(history.state, [0.0])[0] / (0.05 * np.log(1 / c)) - 1) < 1e-13)
     True
     """
-    require_tolerance(rtol)
     return _fill(contact, lambda load, r: load.modulus * load.stress(r), radius)
 
 
-def slip(
-    contact: TangentialContact | ContactState, radius: ArrayLike, *, rtol: float = 1e-10
-) -> Array:
+def slip(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
     """Return the slip s(r) = u(r) - u_x of the surface in the contact [length].
 
     It is the displacement u(r) of the surface less that of the body.
@@ -140,8 +133,6 @@ def slip(
     ----------
     contact : tangential contact under any number of loads, or end of a load history.
     radius : radii [length], >= 0, shape (m,).
-    rtol : accuracy required, 1e-13 to 1e-3. Integrals are as accurate as the tightest, whatever it
-        is.
 
     Returns
     -------
@@ -149,10 +140,9 @@ def slip(
 
     Raises
     ------
-    InputError : a radius that is negative or not finite, an `rtol` out of range, or an array as a
-        parameter of the profile.
+    InputError : a radius that is negative or not finite, or an array as a parameter of the
+        profile.
     """
-    require_tolerance(rtol)
 
     def values(load: Traction, r: Array) -> Array:
         result = np.zeros(r.shape)

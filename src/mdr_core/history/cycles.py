@@ -59,7 +59,6 @@ def cycles(
     tangential_force: float | None = None,
     count: int = 1,
     samples_per_step: int = 1,
-    rtol: float = 1e-10,
 ) -> LoadCycles:
     """Return cycles of tangential load, the normal load constant or in phase with it.
 
@@ -76,7 +75,6 @@ def cycles(
     tangential_displacement, tangential_force : exactly one, the amplitude [length], [force].
     count : number of cycles.
     samples_per_step : evenly spaced samples on each of the 2 + 2 `count` load steps.
-    rtol : relative accuracy, as for `solve`.
 
     Returns
     -------
@@ -122,11 +120,10 @@ def cycles(
         tangential_displacement=turning(tangential_displacement),
         tangential_force=turning(tangential_force),
         samples_per_step=samples_per_step,
-        rtol=rtol,
     )
     if history.rounding > UNRESOLVED:
         detail = (
             "the tangential load is lost in the rounding errors of the normal load: increase it"
         )
         raise AccuracyError(detail, ("cycles", "tangential"))
-    return LoadCycles(history.path, e_star, history.results, rtol, count)
+    return LoadCycles(history.path, e_star, history.results, count)

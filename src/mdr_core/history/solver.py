@@ -37,7 +37,6 @@ class LoadHistory(validity.ContactResults):
     """Effective modulus [pressure], or the material that has it."""
     results: StepResults | ExtrapolatedResults
     """Results of the tangential foundation in reduced units."""
-    rtol: float
     quantities: ClassVar[tuple[str, ...]] = (
         "step",
         "indentation_depth",
@@ -59,7 +58,7 @@ class LoadHistory(validity.ContactResults):
         least, most = extremes(load)
         # A single load takes less time than several.
         given = {self.path.normal_name: number(most) if least == most else load}
-        return normal.solve(self.path.start.profile, self.e_star, **given, rtol=self.rtol)
+        return normal.solve(self.path.start.profile, self.e_star, **given)
 
     @property
     def step(self) -> Indices:
@@ -222,7 +221,7 @@ class LoadHistory(validity.ContactResults):
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        return self.normal.warnings_with(self.rtol, self.error_estimate)
+        return self.normal.warnings_with(self.error_estimate)
 
 
 def solve(
@@ -236,7 +235,6 @@ def solve(
     tangential_displacement: ArrayLike | None = None,
     tangential_force: ArrayLike | None = None,
     samples_per_step: int = 1,
-    rtol: float = 1e-10,
     initial_state: Mapping[str, Any] | None = None,
 ) -> LoadHistory:
     """Return the results of a load history that starts from the unloaded bodies.
@@ -247,8 +245,7 @@ def solve(
 
     If depth and tangential force are prescribed, or normal force and displacement, steps on which
     both change are replaced by chords, and results are extrapolated: their relative error is
-    mostly 1e-9 to 1e-7, and at most about 1e-5. `error_estimate` bounds it, and the warning
-    `accuracy` is raised where it exceeds `rtol`.
+    mostly 1e-9 to 1e-7, and at most about 1e-5. `error_estimate` bounds it.
 
     Source: mdr-5, Eqs. (5.4)-(5.9), (5.19)-(5.23), (5.71); notes, §10.
 
@@ -261,7 +258,6 @@ def solve(
     tangential_displacement, tangential_force : exactly one, the points [length], [force] of either
         sign, shape (n,). One of the two may be a single value for all points.
     samples_per_step : evenly spaced samples from each point to the next, >= 1.
-    rtol : relative accuracy, 1e-13 to 1e-3.
     initial_state : `final_state` of a history of the same contact and controls, which this one
         carries on: a path in pieces has the results of the path as a whole.
 
@@ -303,16 +299,16 @@ def solve(
         if pressed[0] == "normal_force" and begin.normal < 0:
             raise InputError(_BEGIN, not_negative("normal_force"))
     path = load_path.build(start, pressed, pushed, samples_per_step, begin)
-    _require_solvable(path, rtol)
+    _require_solvable(path)
     lines, _ = path.at_start
     # Under a flat punch depth and force are proportional, so that every step is straight.
     if len(lines) > 1 or (path.nonlinear.any() and not profile.has_no_partial_slip):
-        return LoadHistory(path, e_star, nonlinear_steps.results(path), rtol)
+        return LoadHistory(path, e_star, nonlinear_steps.results(path))
     results = StepResults(path.moments, path.load_points, lines[0], begin.regime)
-    return LoadHistory(path, e_star, results, rtol)
+    return LoadHistory(path, e_star, results)
 
 
-def _require_solvable(path: SampledPath, rtol: float) -> None:
+def _require_solvable(path: SampledPath) -> None:
     """Raise InputError unless the normal contact has a solution at the start and all samples.
 
     It has, if it has one under the largest load and under the smallest above zero.
@@ -324,7 +320,7 @@ def _require_solvable(path: SampledPath, rtol: float) -> None:
     for load in dict.fromkeys((max(most, 0.0), max(least, 0.0))):
         try:
             given = {path.normal_name: number(load)}
-            normal.solve(path.start.profile, path.start.e_star, **given, rtol=rtol)
+            normal.solve(path.start.profile, path.start.e_star, **given)
         except InputError as error:
             if error.path[:1] != ("load",):
                 raise

@@ -11,13 +11,12 @@ from starlette.responses import Response
 from uvicorn.protocols.http.flow_control import HIGH_WATER_LIMIT
 
 from mdr_service import problems
+from mdr_service.batch import BatchQuery
 from mdr_service.content_negotiation import ResponseParameters, appearance, media_type
 from mdr_service.dispatch import is_short, respond
 from mdr_service.middleware import header, hold, read_body
-from mdr_service.query_parameters import PARAMETERS, Parameters
+from mdr_service.query_parameters import Parameters
 from mdr_service.schemas import contacts
-from mdr_service.schemas.batch import BatchQuery
-from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.serializers import FORMATS, JSON, PICTURES
 from mdr_service.serializers.picture import AS_USUAL, Appearance
 
@@ -47,7 +46,7 @@ async def _answer(
 ) -> Response:
     """Return the response, of a long query or an unparsed one from a compute process."""
     arguments = name, query, *form, members
-    if isinstance(query, contacts.Query) and form[0] not in PICTURES and is_short(query):
+    if isinstance(query, contacts.Query) and form[0] not in PICTURES and is_short(name, query):
         content = respond(*arguments)
     else:
         content = await request.app.state.compute.run_in_process(respond, *arguments)
@@ -57,7 +56,7 @@ async def _answer(
 
 
 class QueryRoute(APIRoute):
-    """Route of an endpoint whose operation has the name of a query, after ``get_`` if it is a GET.
+    """Route of the endpoint of a query.
 
     The framework's own handler would parse a body to a dictionary first, solve dependencies and
     validate the response. This one parses the bytes straight into the model: 20 instead of 50 µs
@@ -65,12 +64,32 @@ class QueryRoute(APIRoute):
     that they do not block the event loop.
     """
 
+    def __init__(
+        self,
+        path: str,
+        endpoint: Callable[..., Any],
+        *,
+        query_name: str,
+        model: type[contacts.Query | BatchQuery],
+        parameters: type[ResponseParameters] = ResponseParameters,
+        **described: Any,
+    ) -> None:
+        """Create the route.
+
+        Parameters
+        ----------
+        path, endpoint : path, and function that declares the endpoint.
+        query_name : name of the query, or ``batch``.
+        model : model of the request.
+        parameters : model of the parameters of the URL, of `Parameters` if they are the request.
+        described : what OpenAPI documents, as for `APIRoute`.
+        """
+        self.query_name, self.model, self.parameters = query_name, model, parameters
+        super().__init__(path, endpoint, **described)
+
     def get_route_handler(self) -> Callable[[Request], Any]:
         """Return the handler of a request."""
-        operation = str(self.operation_id)
-        name = operation.removeprefix("get_")
-        parameters = ResponseParameters if operation == name else PARAMETERS[name]
-        model = BatchQuery if name == "batch" else SCHEMAS[name].model
+        name, model, parameters = self.query_name, self.model, self.parameters
 
         async def handle(request: Request) -> Response:
             texts = _url_parameters(request, parameters)

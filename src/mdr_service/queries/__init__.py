@@ -1,41 +1,142 @@
-"""The queries: request model -> arguments -> core -> complete plain result.
+"""The queries: endpoint, models and functions of each, from the request to its complete result.
 
-Everything that a response holds is computed and checked here: serializers only format it.
+Everything that a response holds is computed and checked by these functions: serializers only
+format it.
 """
 
 from collections.abc import Callable, Mapping
 from typing import Any, Final, NamedTuple
 
-from mdr_service.queries.contacts import (
-    Result,
-    normal_result,
-    solve_normal,
-    solve_tangential,
-    tangential_result,
-)
+from mdr_service.queries.contacts import Result, contact_result, solve_normal, solve_tangential
 from mdr_service.queries.fields import solve_stress, stress_result
 from mdr_service.queries.fits import fit_result, solve_fit
 from mdr_service.queries.impacts import impact_result, solve_impact
 from mdr_service.queries.load_paths import history_result, solve_history
 from mdr_service.queries.subsurface import solve_subsurface, subsurface_result
 from mdr_service.queries.wear import evolution_result, solve_evolution, solve_wear, wear_result
+from mdr_service.schemas import answers
+from mdr_service.schemas.answers import SolvedAnswer
+from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
+from mdr_service.schemas.fields import StressQuery
+from mdr_service.schemas.fits import FitQuery
+from mdr_service.schemas.impacts import ImpactQuery
+from mdr_service.schemas.load_paths import HistoryQuery
+from mdr_service.schemas.subsurface import SubsurfaceQuery
+from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 
 
 class QueryType(NamedTuple):
-    """Solver of a query, and the plain result of what it solves."""
+    """A query: its endpoint, its models, and the functions that compute its result."""
 
-    solve: Callable[..., Any]
+    name: str
+    """Name in a batch, on the command line and as operation of OpenAPI."""
+    path: str
+    summary: str
+    request: type[Query]
+    response: type[SolvedAnswer]
+    solve: Callable[[Any], Any]
+    """Function whose docstring describes the endpoint in OpenAPI."""
     result: Callable[[Any, Any], Result]
+    tag: str = "contact"
+    by_parameters: str = ""
+    """Title of the endpoint `GET`; empty where a request does not consist of numbers."""
+    is_long: bool = False
+    """True if every query runs in a compute process."""
 
 
-QUERIES: Final[Mapping[str, QueryType]] = {
-    "normal": QueryType(solve_normal, normal_result),
-    "tangential": QueryType(solve_tangential, tangential_result),
-    "history": QueryType(solve_history, history_result),
-    "fit": QueryType(solve_fit, fit_result),
-    "impact": QueryType(solve_impact, impact_result),
-    "stress": QueryType(solve_stress, stress_result),
-    "subsurface": QueryType(solve_subsurface, subsurface_result),
-    "wear": QueryType(solve_wear, wear_result),
-    "evolution": QueryType(solve_evolution, evolution_result),
-}
+_TYPES: Final = (
+    QueryType(
+        "normal",
+        "/v1/normal",
+        "Normal contact under a depth, a force or a contact radius",
+        NormalQuery,
+        answers.NormalAnswer,
+        solve_normal,
+        contact_result,
+        by_parameters="Normal contact",
+    ),
+    QueryType(
+        "fit",
+        "/v1/normal/fit",
+        "Modulus, contact point, offset and adhesion from a measured curve of force over depth",
+        FitQuery,
+        answers.FitAnswer,
+        solve_fit,
+        fit_result,
+        is_long=True,
+    ),
+    QueryType(
+        "tangential",
+        "/v1/tangential",
+        "Partial slip under a tangential force or displacement, or a stick radius",
+        TangentialQuery,
+        answers.TangentialAnswer,
+        solve_tangential,
+        contact_result,
+        by_parameters="Partial slip",
+    ),
+    QueryType(
+        "history",
+        "/v1/tangential/history",
+        "Load history: an arbitrary load path or identical cycles",
+        HistoryQuery,
+        answers.HistoryAnswer,
+        solve_history,
+        history_result,
+        by_parameters="Cycles of the tangential load",
+    ),
+    QueryType(
+        "impact",
+        "/v1/tangential/impact",
+        "Oblique impact: rebound, duration and loss of energy by friction",
+        ImpactQuery,
+        answers.ImpactAnswer,
+        solve_impact,
+        impact_result,
+        is_long=True,
+    ),
+    QueryType(
+        "stress",
+        "/v1/stress",
+        "Surface stresses, slip and displacement over the radius",
+        StressQuery,
+        answers.StressAnswer,
+        solve_stress,
+        stress_result,
+        by_parameters="Fields over the radius",
+    ),
+    QueryType(
+        "subsurface",
+        "/v1/subsurface",
+        "Stresses beneath the surface of either body, their peaks and the onset of yield",
+        SubsurfaceQuery,
+        answers.SubsurfaceAnswer,
+        solve_subsurface,
+        subsurface_result,
+        is_long=True,
+    ),
+    QueryType(
+        "wear",
+        "/v1/wear",
+        "Limiting state of fretting wear under a small oscillation",
+        WearQuery,
+        answers.WearAnswer,
+        solve_wear,
+        wear_result,
+        tag="wear",
+        by_parameters="Limiting state of fretting wear",
+    ),
+    QueryType(
+        "evolution",
+        "/v1/wear/evolution",
+        "Fretting wear over the cycles: profile and pressure up to the limiting state",
+        EvolutionQuery,
+        answers.EvolutionAnswer,
+        solve_evolution,
+        evolution_result,
+        tag="wear",
+        is_long=True,
+    ),
+)
+QUERIES: Final[Mapping[str, QueryType]] = {each.name: each for each in _TYPES}
+"""The queries by their names."""

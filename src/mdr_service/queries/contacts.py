@@ -17,15 +17,12 @@ from mdr_core.elementwise import every
 from mdr_core.errors import DefectError, InputError, Notice
 from mdr_core.history import LoadHistory
 from mdr_core.impact import Impact
-from mdr_core.normal import NormalContact
+from mdr_core.normal import ACCURACY, NormalContact, inaccurate
+from mdr_core.results import Results
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
-from mdr_core.wear.evolution import WearEvolution
-from mdr_core.wear.limit import LimitingWear
-from mdr_service.schemas.answers import SolvedAnswer, TangentialAnswer
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import LoadedQuery
-from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.wear import WearQuery
 
@@ -35,45 +32,30 @@ ADHESION: Final = {"work_of_adhesion", "range_of_adhesion"}
 
 Result = dict[str, Any]
 """The members of a JSON response in their order, with arrays for long lists."""
-Wear = LimitingWear | WearEvolution
 Contact = NormalContact | TangentialContact | LoadHistory
 
 
-def members(model: type[SolvedAnswer], without: Iterable[str] = ()) -> tuple[str, ...]:
-    """Return the names of the numbers that a response holds."""
-    excluded = {*SolvedAnswer.model_fields, *without}
-    return tuple(name for name in model.model_fields if name not in excluded)
-
-
-_NORMAL: Final = NormalContact.quantities
-_PARTIAL_SLIP: Final = members(TangentialAnswer, [*_NORMAL, "data_error"])
-
-
 def solve_normal(query: NormalQuery | LoadedQuery | WearQuery) -> NormalContact:
-    """Return the normal contact of a query, which is adhesive with a work of adhesion."""
+    """Compute the frictionless contact of a profile with an elastic half-space.
+
+    Every list of the response has one entry per load. `method` names the most expensive method
+    used, `error_estimate` is an upper bound on the relative error of every number.
+    """
     arguments = body(query) | control(query.load)
     given = query.material.model_dump(include=ADHESION, exclude_unset=True)
     solve: Any = adhesion.solve if given else normal_contact.solve
-    contact: NormalContact = solve(**arguments, **given, rtol=query.rtol)
+    contact: NormalContact = solve(**arguments, **given)
     return contact
 
 
-def normal_result(query: NormalQuery, contact: NormalContact) -> Result:
-    """Return the quantities of a frictionless normal contact."""
-    return _result(query, contact, by_load(contact, contact.quantities, query.loads))
-
-
 def solve_tangential(query: TangentialQuery | LoadedQuery) -> TangentialContact:
-    """Return the contact with friction of a query."""
+    """Compute a contact with friction, loaded normally first and then tangentially once.
+
+    Every list of the response has one entry per pair of loads. A tangential force beyond µ F_N has
+    no equilibrium and is rejected; a displacement beyond full slip has the regime `full_slip`.
+    """
     tangential = paired("tangential", query.tangential, query.load)
     return tangential_contact.solve(solve_normal(query), **friction(query), **tangential)
-
-
-def tangential_result(query: TangentialQuery, contact: TangentialContact) -> Result:
-    """Return the quantities of a contact in partial slip under a tangential load."""
-    loads = query.loads
-    values = by_load(contact.normal, _NORMAL, loads) | by_load(contact, _PARTIAL_SLIP, loads)
-    return _result(query, contact, values)
 
 
 def profile(model: Profile) -> profiles.Profile:
@@ -94,7 +76,7 @@ def _by_parameters(kind: str, **given: Any) -> profiles.Profile:
 
 
 def body(query: Query) -> Arguments:
-    """Return profile and effective modulus, as arguments of the core.
+    """Return profile and material, as arguments of the core.
 
     Raises InputError where adhesion meets friction or yield, or has a range and no work.
     """
@@ -106,13 +88,13 @@ def body(query: Query) -> Arguments:
             raise InputError(("material", "yield_strength"), adhesion.AdhesiveContact.unusable)
     elif material.has("range_of_adhesion"):
         raise InputError(("material", "work_of_adhesion"), "is needed with range_of_adhesion")
-    return {"profile": profile(query.profile), "e_star": query.material.effective.e_star}
+    return {"profile": profile(query.profile), "e_star": material.effective}
 
 
 def friction(query: Any) -> Arguments:
-    """Return shear modulus and coefficient of friction, as arguments of the core."""
-    effective = query.material.effective
-    return {"g_star": effective.g_star, "friction_coefficient": query.friction_coefficient}
+    """Return material and coefficient of friction, as arguments of the core."""
+    known = query.material.effective
+    return {"g_star": known, "friction_coefficient": query.friction_coefficient}
 
 
 def control(given: Choice) -> Arguments:
@@ -129,17 +111,14 @@ def paired(name: str, given: Choice, load: Choice) -> Arguments:
     return control(given)
 
 
-def _result(
-    query: NormalQuery, source: NormalContact | TangentialContact, values: Result
-) -> Result:
-    warnings = notices(query, source)
+def contact_result(query: NormalQuery, source: NormalContact | TangentialContact) -> Result:
+    """Return the quantities of a contact under its loads, with or without friction."""
+    values = by_load(source, query.loads)
     if source.normal.data_error is not None:
-        values |= by_load(source.normal, ["data_error"], query.loads)
-    singular = any(notice.code == "singular" for notice in warnings)
+        values["data_error"] = np.full(query.loads, source.normal.data_error)
+    singular = any(notice.code == "singular" for notice in source.warnings)
     names = ("mean_pressure", "maximum_pressure", "normal_stiffness")
-    infinite = dict.fromkeys(names, singular)
-    found = checked(query, values, infinite)
-    return found | response_metadata(query, source, source.method, source.error_estimate, warnings)
+    return response(query, source, values, infinite=dict.fromkeys(names, singular))
 
 
 def require_one_of(query: Query, first: str, second: str) -> None:
@@ -149,9 +128,9 @@ def require_one_of(query: Query, first: str, second: str) -> None:
         raise InputError((place,), f"exactly one of {first}, {second} is needed")
 
 
-def by_load(source: object, names: Iterable[str], loads: int) -> Result:
-    """Return attributes of `source` by name, broadcast to one entry per load."""
-    return {name: np.full(loads, getattr(source, name)) for name in names}
+def by_load(source: Results, loads: int) -> Result:
+    """Return the quantities of a solution by name, each with one entry per load."""
+    return {name: np.full(loads, value) for name, value in source.computed().items()}
 
 
 def checked(
@@ -178,56 +157,61 @@ def _finite(values: Array) -> bool:
     return values.dtype.kind != "f" or every(np.isfinite(values))
 
 
-def response_metadata(
+def response(
     query: Query,
-    source: Contact | Wear | Impact,
-    method: str,
-    error: float,
-    warnings: Iterable[Notice],
+    source: Any,
+    values: Result,
+    *,
+    unchecked: Result | None = None,
+    infinite: Mapping[str, bool | Flags] | None = None,
+    method: str = "",
+    error: float | None = None,
+    warnings: Iterable[Notice] = (),
 ) -> Result:
-    """Return the method, the error estimates and the warnings of a response.
+    """Return the values of a response with the method, the error estimates and the warnings.
 
     Parameters
     ----------
-    query : the request, with the bodies and the required accuracy.
-    source : the solution.
-    method : name of the method.
-    error : error estimate of all numbers of the response, its fields included.
-    warnings : those to be reported.
+    query : the request.
+    source : the solution, a result of the core.
+    values : members of the response, numbers that are checked.
+    unchecked : members that are no lists of numbers.
+    infinite : True for the members, or their entries, that can be infinite.
+    method, error : method and error estimate of the values, where they are not those of the source.
+    warnings : warnings about the values, besides those of the source.
+
+    Raises
+    ------
+    InputError : a value overflows.
+    DefectError : a value is not a number.
     """
-    contact = source.tangential_contact if isinstance(source, Wear) else source
-    own = np.ravel(validity.model_error(contact, query.material.effective))
-    count = query.path.samples if isinstance(query, HistoryQuery) else query.loads
-    # Fields at the end of a history are those of its last sample.
-    known = own[-1:] if count == 1 else np.full(count, own)
-    found = [*warnings]
-    if source.error_estimate <= query.rtol < error:
-        # That of fields, which the source does not know.
-        found.append(normal_contact.not_reached(query.rtol, error))
-    listed = [vars(notice) for notice in found]
-    about = {"method": method, "error_estimate": error, "model_error": known}
-    return about | {"warnings": listed}
+    error = source.error_estimate if error is None else error
+    found = [*source.warnings, *validity.notices(yields(query, source))]
+    if not isinstance(query, NormalQuery):
+        # Other responses hold no scalar that is singular; their fields have warnings of their own.
+        found = [notice for notice in found if notice.code != "singular"]
+    found += warnings
+    if source.error_estimate <= ACCURACY < error:
+        # The source does not depend on the error of fields.
+        found.append(inaccurate(error))
+    known = np.ravel(source.model_error)
+    about = {
+        "method": method or source.method,
+        "error_estimate": error,
+        # Fields at the end of a history have the error of its last sample.
+        "model_error": known[-1:] if query.loads == 1 else np.full(query.loads, known),
+        "warnings": [vars(notice) for notice in found],
+    }
+    return checked(query, values, infinite) | (unchecked or {}) | about
 
 
-def notices(query: Query, source: Contact | Impact | Wear) -> list[Notice]:
-    """Return the warnings about a contact, its material and, if requested, yield."""
-    contact = source.tangential_contact if isinstance(source, Wear) else source
-    found = [*validity.notices(findings(query, contact)), *source.warnings_without_bodies]
-    if isinstance(query, NormalQuery):
-        return found
-    # Other responses hold no scalar that is singular; their fields have warnings of their own.
-    return [notice for notice in found if notice.code != "singular"]
-
-
-def findings(query: Query, contact: Contact | Impact) -> list[validity.Finding]:
-    """Return the findings on validity for the bodies of a query."""
-    material = query.material.effective
-    found = validity.findings(contact, material)
-    if query.material.has("yield_strength"):
-        ratios = material.poissons_ratios
-        pressed = contact.normal if isinstance(contact, Impact) else contact
-        found.append(subsurface.yield_finding(pressed, ratios, query.material.yield_strength))
-    return found
+def yields(query: Query, source: Any) -> list[validity.Finding]:
+    """Return the finding `yield` of the bodies of a query with a yield strength."""
+    if not query.material.has("yield_strength"):
+        return []
+    pressed = source.normal if isinstance(source, Impact) else source.solved
+    ratios = query.material.effective.poissons_ratios
+    return [subsurface.yield_finding(pressed, ratios, query.material.yield_strength)]
 
 
 def singular(

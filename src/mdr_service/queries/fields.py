@@ -16,10 +16,8 @@ from mdr_core.validation import TIGHTEST
 from mdr_service.queries.contacts import (
     Contact,
     Result,
-    checked,
-    notices,
     require_one_of,
-    response_metadata,
+    response,
     singular,
     solve_normal,
     solve_tangential,
@@ -37,7 +35,11 @@ End = tuple[NormalContact, TangentialContact | ContactState | None]
 
 
 def solve_stress(query: StressQuery) -> Contact:
-    """Return the contact, or the load history, whose fields a query requests."""
+    """Compute the fields named in `quantities`, and nothing else, by load and radius.
+
+    `error_estimate` bounds the error of each field relative to its largest value. A rounding error
+    of a requested radius near a, c or a break is not included.
+    """
     _require_consistent(query)
     return solve_loaded(query)
 
@@ -75,7 +77,6 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     radii = map(float, contact.profile.infinite_pressure_radii)
     at_singular = np.isin(radius, [0.0, *radii, *edges])
     infinite: dict[str, Flags] = dict.fromkeys(("pressure", "shear_stress"), at_singular)
-    checked(query, values, infinite)
     method = _method(source, contact, query.quantities)
     # The error of the edges adds to that of the integrals.
     integrated = 0.0 if method == "closed_form" else TIGHTEST
@@ -83,9 +84,15 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         fields.edge_error(contact if name == "pressure" else partial or contact, name, radius)
         for name in query.quantities
     )
-    warnings = notices(query, source) + singular(radius, values, infinite)
-    error = max(source.error_estimate, integrated) + at_edges
-    return {"radius": radius} | values | response_metadata(query, source, method, error, warnings)
+    return response(
+        query,
+        source,
+        {"radius": radius} | values,
+        infinite=infinite,
+        method=method,
+        error=max(source.error_estimate, integrated) + at_edges,
+        warnings=singular(radius, values, infinite),
+    )
 
 
 def field(name: str, end: End, radius: Array) -> Array:
@@ -109,12 +116,8 @@ def at_end(source: Contact) -> End:
     if isinstance(source, NormalContact):
         return source, None
     depth = max(float(source.indentation_depth[-1]), 0.0)
-    end = normal_contact.solve(
-        source.path.start.profile,
-        source.path.start.e_star,
-        indentation_depth=depth,
-        rtol=source.rtol,
-    )
+    start = source.path.start
+    end = normal_contact.solve(start.profile, start.e_star, indentation_depth=depth)
     return end, source.state
 
 

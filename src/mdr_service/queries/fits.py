@@ -10,7 +10,12 @@ from mdr_service.schemas.fits import FitQuery
 
 
 def solve_fit(query: FitQuery) -> Fit:
-    """Return the fit to the curve of a query."""
+    """Fit F = E* F̂(d − d₀) + F₀ to a measured curve by least squares.
+
+    The standard errors hold for independent errors of the forces of equal size. A warning `misfit`
+    tells that the residuals are not such noise: then the shape or the model is wrong.
+    `error_estimate` is the numerical error of the parameters.
+    """
     if ("e_star" in query.fit) == query.has("material"):
         reason = "e_star is fitted: leave it out" if query.has("material") else "is needed"
         raise InputError(("material",), f"{reason}, or change `fit`")
@@ -26,7 +31,6 @@ def solve_fit(query: FitQuery) -> Fit:
         e_star=known.effective.e_star if known else None,
         noise=query.noise,
         body_thickness=query.body_thickness or (known.body_thickness if known else None),
-        rtol=query.rtol,
     )
 
 

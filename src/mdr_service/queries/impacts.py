@@ -8,27 +8,26 @@ from mdr_service.queries.contacts import (
     Result,
     body,
     by_load,
-    checked,
     friction,
-    members,
-    notices,
-    response_metadata,
+    response,
 )
-from mdr_service.schemas.answers import ImpactAnswer
 from mdr_service.schemas.impacts import ImpactQuery
 
-_QUANTITIES: Final = members(ImpactAnswer)
 _MOTION: Final = {"normal_mass", "tangential_mass", "normal_velocity", "tangential_velocity"}
 
 
 def solve_impact(query: ImpactQuery) -> Impact:
-    """Return the impacts of a query."""
+    """Compute the rebound of bodies that hit each other with normal and tangential velocities.
+
+    The normal motion is elastic, and the tangential force follows from the slip memory of the
+    whole contact. Masses are those of the contact point: m and 2/7 m for a solid sphere. Every
+    list of the response has one entry per impact. `error_estimate` is an estimate, relative to the
+    velocity and the energy before the impact.
+    """
     motion = query.model_dump(include=_MOTION)
     return impact.solve(**body(query), **friction(query), **motion, rtol=query.rtol)
 
 
 def impact_result(query: ImpactQuery, source: Impact) -> Result:
     """Return velocities, durations and energies of impacts."""
-    values = checked(query, by_load(source, _QUANTITIES, query.loads))
-    about = source.method, source.error_estimate, notices(query, source)
-    return values | response_metadata(query, source, *about)
+    return response(query, source, by_load(source, query.loads))

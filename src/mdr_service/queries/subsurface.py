@@ -9,7 +9,7 @@ from mdr_core.adhesion import AdhesiveContact
 from mdr_core.errors import InputError, Notice
 from mdr_core.history import LoadHistory
 from mdr_core.typing import Array, Flags
-from mdr_service.queries.contacts import Contact, Result, checked, notices, response_metadata
+from mdr_service.queries.contacts import Contact, Result, response
 from mdr_service.queries.fields import at_end, require_few_numbers, require_loads, solve_loaded
 from mdr_service.schemas.contacts import Bodies
 from mdr_service.schemas.subsurface import SubsurfaceQuery
@@ -24,7 +24,13 @@ _CRITERIA: Final = {"tresca": "maximum_shear", "von_mises": "von_mises"}
 
 
 def solve_subsurface(query: SubsurfaceQuery) -> Contact:
-    """Return the contact, or the load history, whose stresses a query requests."""
+    """Compute the stresses named in `quantities` by load, depth z and x, in the plane of one y.
+
+    `error_estimate` is relative to the largest stress of the response. With a `yield_strength` of
+    the material, and without `history`, the response holds the normal force at the onset of yield,
+    at the same ratio of tangential to normal force. The tangential force acts on body 1 along x,
+    its reaction on body 2.
+    """
     require_loads(query)
     for name in ("x", "z"):
         if query.has(name) == query.has("points"):
@@ -51,10 +57,9 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     shape = query.loads, z.size, x.size
     values: Result = {name: _by_name(tensor, name).reshape(shape) for name in query.quantities}
     infinite: Flags = np.isinf(tensor.zz).reshape(shape)
-    checked(query, values, dict.fromkeys(values, infinite))
+    places = dict.fromkeys(values, infinite)
     own = source.error_estimate if isinstance(source, LoadHistory) else 0.0
     error = _OF_INVARIANTS * (own + subsurface.error_estimate(loaded, *place))
-    warnings = notices(query, source)
     searched: Result = {}
     if query.largest:
         peaks = {name: subsurface.largest(loaded, name, **body) for name in subsurface.MEASURES}
@@ -71,12 +76,18 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
         }
     if searched:
         searched["search_error_estimate"] = _OF_SEARCH
-    if infinite.any():
-        message = "stresses are infinite on the surface, where the pressure is"
-        warnings.append(Notice("singular", message))
+    message = "stresses are infinite on the surface, where the pressure is"
     method = "closed_form" if contact.profile.has_no_partial_slip else "quadrature"
-    about = response_metadata(query, source, method, error, warnings)
-    return {"x": x, "z": z} | values | searched | about
+    return response(
+        query,
+        source,
+        {"x": x, "z": z} | values,
+        unchecked=searched,
+        infinite=places,
+        method=method,
+        error=error,
+        warnings=[Notice("singular", message)] if infinite.any() else [],
+    )
 
 
 def body_of(query: SubsurfaceQuery) -> dict[str, Any]:

@@ -1,11 +1,11 @@
 """Queries about fretting wear."""
 
-from typing import Any, Final, get_args
+from typing import Any, Final
 
 import numpy as np
 
 from mdr_core import normal as normal_contact
-from mdr_core.errors import InputError
+from mdr_core.errors import InputError, Notice
 from mdr_core.typing import Array, Flags
 from mdr_core.wear import evolution as wear_evolution
 from mdr_core.wear import limit as wear_limit
@@ -13,27 +13,19 @@ from mdr_core.wear.evolution import WearEvolution
 from mdr_core.wear.limit import LimitingWear
 from mdr_service.queries.contacts import (
     Result,
-    Wear,
     body,
     by_load,
-    checked,
     control,
     friction,
-    members,
-    notices,
     paired,
-    response_metadata,
+    response,
     singular,
     solve_normal,
 )
 from mdr_service.queries.fields import require_few_numbers
-from mdr_service.schemas.answers import EvolutionAnswer, WearAnswer
-from mdr_service.schemas.wear import EvolutionField, EvolutionQuery, WearField, WearQuery
+from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 
-_WEAR: Final = members(WearAnswer, ("radius", *get_args(WearField)))
-_EVOLUTION: Final = members(
-    EvolutionAnswer, ("radius", "field_error_estimate", *get_args(EvolutionField))
-)
+Wear = LimitingWear | WearEvolution
 # A set would order the warnings by chance, and differently in each process.
 _PROFILES: Final = ("initial_profile", "limiting_profile", "profile")
 # Infinite under unbounded wear.
@@ -43,7 +35,17 @@ _UNBOUNDED: Final = frozenset(
 
 
 def solve_wear(query: WearQuery) -> LimitingWear:
-    """Return the limiting state of fretting wear of a query."""
+    """Compute the limiting profile: the annulus outside the stick zone wears until it is unloaded.
+
+    The given controls are held constant. With a constant depth and displacement amplitude, and with
+    constant forces, the limiting state is unique and does not depend on the wear law. With a
+    constant normal force and displacement amplitude it depends on the path: the response is the
+    approximation of Popov and Heß (2015), Eq. (5.90), with a warning `path_dependent`;
+    `/v1/wear/evolution` computes the path itself.
+
+    In full slip, wear is unbounded under a constant force (`endless_wear`), and ends in separation
+    at a constant depth (`contact_lost`). Without slip there is no wear (`no_wear`).
+    """
     _require_radii(query)
     amplitude = paired("oscillation", query.oscillation, query.load)
     try:
@@ -54,12 +56,20 @@ def solve_wear(query: WearQuery) -> LimitingWear:
 
 def wear_result(query: WearQuery, limit: LimitingWear) -> Result:
     """Return the limiting state of fretting wear."""
-    values = by_load(limit, _WEAR, query.loads)
-    return _result(query, limit, values, np.ravel(limit.stick_zone.unbounded))
+    return _result(query, limit, np.ravel(limit.stick_zone.unbounded))
 
 
 def solve_evolution(query: EvolutionQuery) -> WearEvolution:
-    """Return fretting wear over the cycles of a query."""
+    """Integrate the wear law dh/dN = K µ p S over the cycles.
+
+    h is the worn depth at a radius, and S the sliding distance of a cycle there. The given controls
+    are held constant. A query takes about a second, more with the `resolution` and the numbers of
+    cycles. A warning `limit_reached` reports after how many cycles wear stops.
+
+    With a displacement amplitude in full slip, such as a ball in a reciprocating test, the whole
+    contact wears: without bound under a constant force (`endless_wear`), at a constant depth until
+    contact is lost (`contact_lost`).
+    """
     _require_radii(query)
     try:
         return wear_evolution.solve(
@@ -78,20 +88,18 @@ def solve_evolution(query: EvolutionQuery) -> WearEvolution:
 
 def evolution_result(query: EvolutionQuery, worn: WearEvolution) -> Result:
     """Return fretting wear at the listed numbers of cycles."""
-    values = by_load(worn, _EVOLUTION, query.loads)
-    result = _result(query, worn, values, np.zeros(query.loads, dtype=bool))
+    result = _result(query, worn, np.zeros(query.loads, dtype=bool))
     if "radius" in result:
         estimate = worn.field_error_estimate(result["radius"], query.quantities)
         result["field_error_estimate"] = estimate
     return result
 
 
-def _result(
-    query: WearQuery | EvolutionQuery, worn: Wear, values: Result, unbounded: Flags
-) -> Result:
+def _result(query: WearQuery | EvolutionQuery, worn: Wear, unbounded: Flags) -> Result:
     """Return the result of a wear query, with its fields if it has radii."""
+    values = by_load(worn, query.loads)
     radius = worn.grid(query.points) if query.points else np.array(query.radius or ())
-    warnings, error = notices(query, worn), worn.error_estimate
+    warnings, error = list[Notice](), worn.error_estimate
     infinite: dict[str, Any] = {"pressure": True}
     if worn.normal.profile.has_no_partial_slip:
         infinite |= dict.fromkeys(_PROFILES, True)
@@ -108,9 +116,7 @@ def _result(
     for name in _UNBOUNDED & values.keys():
         flags = unbounded[:, None] if np.ndim(values[name]) > 1 else unbounded
         infinite[name] = flags | infinite.get(name, False)
-    return checked(query, values, infinite) | response_metadata(
-        query, worn, worn.method, error, warnings
-    )
+    return response(query, worn, values, infinite=infinite, error=error, warnings=warnings)
 
 
 def _surface(worn: Wear, name: str, radius: Array, query: WearQuery | EvolutionQuery) -> Array:

@@ -1,13 +1,12 @@
 """Requests about contacts under a load, and the parts that all requests share."""
 
 from functools import cached_property
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
 from mdr_core import materials
-from mdr_core.validation import LOOSEST, TIGHTEST
 from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.quantities import (
     ScalarOrArray,
@@ -204,14 +203,28 @@ Material = Annotated[
 _LOADS = ("load", "tangential", "oscillation")
 
 
+class Axes(NamedTuple):
+    """Axes of the picture of a result without radii: members of the result."""
+
+    x: str
+    y: tuple[str, ...]
+    """Ordinates, each with a panel of its own."""
+    curves: str = ""
+    """Member with a curve for each of its values."""
+    in_order: bool = False
+    """True if the curve follows the order of the entries, and not that of the abscissa."""
+    is_measured: bool = False
+    """True if the first ordinate is fitted to measured values, and the second is what is left."""
+
+
 class Query(Strict):
-    """Profile, material and accuracy of every query."""
+    """Profile and material of every query."""
+
+    axes: ClassVar[Axes] = Axes("indentation_depth", ("normal_force",))
+    """Axes of a picture, unless the result has radii."""
 
     profile: Profile
     material: Material
-    rtol: float = quantity(
-        "1", "Required relative accuracy", default=1e-10, ge=TIGHTEST, le=LOOSEST
-    )
 
     @property
     def controls(self) -> dict[str, Choice]:
@@ -248,6 +261,8 @@ def friction(**field: Any) -> Any:
 
 class TangentialQuery(NormalQuery):
     """Contact with friction, loaded normally first and then tangentially."""
+
+    axes = Axes("tangential_displacement", ("tangential_force",), curves="normal_force")
 
     friction_coefficient: float = friction()
     tangential: Tangential = Field(

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.contacts import Material, Query, thickness
+from mdr_service.schemas.contacts import Axes, Material, Query, thickness
 from mdr_service.schemas.fields import OnceEach
 from mdr_service.schemas.quantities import Signed, left_out, positive, quantity
 from mdr_service.settings import SETTINGS
@@ -15,6 +15,8 @@ _CURVE = {"min_length": 3, "max_length": SETTINGS.max_length, "fail_fast": True}
 
 class FitQuery(Query):
     """Measured curve, and what it shall tell about a contact of a known profile."""
+
+    axes = Axes("indentation_depth", ("normal_force", "residual"), is_measured=True)
 
     material: Material = left_out("Elastic constants, if `e_star` is not fitted.")
     indentation_depth: list[Signed] = quantity(

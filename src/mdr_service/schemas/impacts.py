@@ -1,7 +1,7 @@
 """Requests about oblique impacts."""
 
 from mdr_core.validation import LOOSEST, TIGHTEST
-from mdr_service.schemas.contacts import Query, friction
+from mdr_service.schemas.contacts import Axes, Query, friction
 from mdr_service.schemas.quantities import (
     ScalarOrArray,
     SignedScalarOrArray,
@@ -14,6 +14,12 @@ _VELOCITY = "length/time"
 
 class ImpactQuery(Query):
     """Two bodies that hit each other obliquely, with friction."""
+
+    axes = Axes(
+        "tangential_velocity",
+        ("tangential_rebound_velocity", "dissipated_energy"),
+        curves="normal_velocity",
+    )
 
     friction_coefficient: float = friction()
     normal_mass: float = positive(

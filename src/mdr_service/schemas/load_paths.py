@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.contacts import Choice, Query, friction
+from mdr_service.schemas.contacts import Axes, Choice, Query, friction
 from mdr_service.schemas.quantities import (
     LARGEST,
     ScalarOrArray,
@@ -169,6 +169,8 @@ class HistoryState(Strict):
 
 class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles")]}):
     """Contact with friction on a load path."""
+
+    axes = Axes("tangential_displacement", ("tangential_force",), in_order=True)
 
     friction_coefficient: float = friction()
     history: History = left_out("Arbitrary load path, given by its points.")

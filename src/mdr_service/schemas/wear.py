@@ -6,7 +6,7 @@ from pydantic import Field
 
 from mdr_core.validation import LOOSEST
 from mdr_core.wear.evolution import COARSEST, DEFAULT_RESOLUTION, FINEST, TIGHTEST_INTEGRATION
-from mdr_service.schemas.contacts import Choice, friction
+from mdr_service.schemas.contacts import Axes, Choice, friction
 from mdr_service.schemas.fields import FieldQuery, OnceEach, quantities
 from mdr_service.schemas.load_paths import TangentialAmplitude
 from mdr_service.schemas.quantities import ScalarOrArray, Size, positive, quantity
@@ -49,6 +49,8 @@ class _FrettingQuery(FieldQuery):
 class WearQuery(_FrettingQuery):
     """Limiting state of a contact that wears under a tangential oscillation."""
 
+    axes = Axes("stick_radius", ("worn_volume", "wear_radius"))
+
     load: ConstantNormalLoads = Field(
         description="Exactly one control, held constant: depth or force."
     )
@@ -62,6 +64,8 @@ class WearQuery(_FrettingQuery):
 
 class EvolutionQuery(_FrettingQuery):
     """Contact that wears under a tangential oscillation, over the cycles."""
+
+    axes = Axes("cycles", ("worn_volume", "contact_radius"))
 
     load: ConstantNormalLoad = Field(
         description="Exactly one control, held constant: depth or force."

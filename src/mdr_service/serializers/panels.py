@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mdr_service.schemas import answers
+from mdr_service.schemas.contacts import Axes
 
 Array = NDArray[np.float64]
 # Of more loads than this an evenly spaced selection is drawn.
@@ -24,20 +25,6 @@ _DIMENSIONS: Final = {
     for name, field in model.model_fields.items()
     if isinstance(field.json_schema_extra, dict)
 }
-# Abscissa and ordinates of a result without positions, the first of which the result has all, and
-# the member that separates its curves.
-_OVER_LOADS: Final = (
-    ("cycles", ("worn_volume", "contact_radius"), None),
-    ("stick_radius", ("worn_volume", "wear_radius"), None),
-    (
-        "tangential_velocity",
-        ("tangential_rebound_velocity", "dissipated_energy"),
-        "normal_velocity",
-    ),
-    ("tangential_displacement", ("tangential_force",), "normal_force"),
-    ("indentation_depth", ("normal_force",), None),
-)
-
 # Quantities that share a panel.
 _SHARED: Final = {"initial_profile": "profile", "limiting_profile": "profile"}
 
@@ -90,10 +77,10 @@ def panels_of(
     These are fields over the radius or along a line beneath the surface, maps of stresses in a
     plane under the first load, or forces over displacements.
     """
-    if "residual" in result:
-        return "", _fitted(result)
+    if query.axes.is_measured:
+        return "", _fitted(query.axes, result)
     if "x" not in result and "radius" not in result:
-        return _over_loads(result, units)
+        return _over_loads(query.axes, result, units)
     control, loads = next(iter(_varied(query, result).items()), ("", [0.0]))
     if "radius" in result:
         return _over_positions("radius", control, loads, result, units)
@@ -132,23 +119,21 @@ def _over_positions(
     return title, list(panels.values())
 
 
-def _over_loads(result: Mapping[str, Any], units: Units | None) -> tuple[str, list[Panel | Map]]:
-    """Return curves over the loads: one for each normal force with several tangential loads."""
-    x, ordinates, load = next(
-        (x, ys, load) for x, ys, load in _OVER_LOADS if {x, *ys} <= result.keys()
-    )
-    at, control = np.asarray(result[x], dtype=float), ""
-    # The samples of a history follow each other as on its path.
-    parts, values = [np.arange(at.size) if "step" in result else np.argsort(at)], np.zeros(1)
-    if load and "step" not in result:
-        unique, group = np.unique(result[load], return_inverse=True)
+def _over_loads(
+    axes: Axes, result: Mapping[str, Any], units: Units | None
+) -> tuple[str, list[Panel | Map]]:
+    """Return curves over the loads, with a curve for each value that several entries share."""
+    at, control = np.asarray(result[axes.x], dtype=float), ""
+    parts, values = [np.arange(at.size) if axes.in_order else np.argsort(at)], np.zeros(1)
+    if axes.curves:
+        unique, group = np.unique(result[axes.curves], return_inverse=True)
         if 1 < unique.size <= at.size / 2:
-            control, values = load, unique
+            control, values = axes.curves, unique
             parts = [parts[0][group[parts[0]] == i] for i in range(unique.size)]
     title, chosen = _selection(len(parts))
     return title, [
         Panel(
-            x,
+            axes.x,
             y,
             [
                 DrawnCurve(
@@ -157,20 +142,19 @@ def _over_loads(result: Mapping[str, Any], units: Units | None) -> tuple[str, li
                 for i in chosen
             ],
         )
-        for y in ordinates
+        for y in axes.y
     ]
 
 
-def _fitted(result: Mapping[str, Any]) -> list[Panel | Map]:
+def _fitted(axes: Axes, result: Mapping[str, Any]) -> list[Panel | Map]:
     """Return the panels of a measured curve with the fitted one, and of its residuals."""
-    order = np.argsort(result["indentation_depth"])
-    names = "indentation_depth", "normal_force", "residual"
-    depth, fit, residual = (np.asarray(result[name])[order] for name in names)
-    measured = DrawnCurve(depth, fit + residual, "measured", is_measured=True)
-    fitted, left = DrawnCurve(depth, fit, "fitted"), DrawnCurve(depth, residual, is_measured=True)
+    order = np.argsort(result[axes.x])
+    at, fit, residual = (np.asarray(result[name])[order] for name in (axes.x, *axes.y))
+    measured = DrawnCurve(at, fit + residual, "measured", is_measured=True)
+    fitted, left = DrawnCurve(at, fit, "fitted"), DrawnCurve(at, residual, is_measured=True)
     return [
-        Panel("indentation_depth", "normal_force", [measured, fitted]),
-        Panel("indentation_depth", "residual", [left]),
+        Panel(axes.x, y, curves)
+        for y, curves in zip(axes.y, ([measured, fitted], [left]), strict=True)
     ]
 
 
@@ -182,7 +166,7 @@ def _selection(count: int) -> tuple[str, list[int]]:
 
 def _varied(query: Any, result: Mapping[str, Any]) -> dict[str, list[float]]:
     """Return the loads that tell curves apart, by name, first those of the most values."""
-    if "cycles" in result:
+    if query.axes.x == "cycles":
         return {"cycles": result["cycles"]}
     lists = {each.control: each.value for each in query.controls.values() if each.count > 1}
     found = sorted(lists.items(), key=lambda each: -len(set(each[1])))

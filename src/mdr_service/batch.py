@@ -1,33 +1,26 @@
 """Several queries in one request, and their responses."""
 
+from collections.abc import Callable
 from functools import cached_property
-from typing import Any, Literal
+from typing import Annotated, Any
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, WrapValidator
 
+from mdr_core.errors import InputError
+from mdr_service.queries import QUERIES
 from mdr_service.schemas.answers import Answer, Problem
 from mdr_service.schemas.contacts import Query
 from mdr_service.schemas.quantities import Strict, left_out
-from mdr_service.schemas.queries import SCHEMAS
 from mdr_service.settings import SETTINGS
 
 
 class BatchItem(Strict):
     """Query of a batch."""
 
-    ask: Literal[
-        "normal",
-        "fit",
-        "tangential",
-        "history",
-        "impact",
-        "stress",
-        "subsurface",
-        "wear",
-        "evolution",
-    ] = Field(
+    ask: str = Field(
         description="Name of the query, as its path ends: `fit` belongs to `/v1/normal`, `history` "
-        "and `impact` to `/v1/tangential`, `evolution` to `/v1/wear`."
+        "and `impact` to `/v1/tangential`, `evolution` to `/v1/wear`.",
+        json_schema_extra={"enum": [*QUERIES]},
     )
     request: dict[str, Any] = Field(
         description="Request of the query, as for its own endpoint: `NormalQuery` for `normal`, "
@@ -35,20 +28,37 @@ class BatchItem(Strict):
     )
 
     @cached_property
-    def query(self) -> Query | ValidationError:
+    def query(self) -> Query | ValidationError | InputError:
         """Query, or the reason why the request is invalid."""
+        if self.ask not in QUERIES:
+            return InputError((), f"there is no such query; there are {', '.join(QUERIES)}")
         try:
-            return SCHEMAS[self.ask].model.model_validate(self.request)
+            return QUERIES[self.ask].request.model_validate(self.request)
         except ValidationError as error:
             return error
+
+
+def _or_error(
+    value: object, validate: Callable[[object], BatchItem]
+) -> BatchItem | ValidationError:
+    """Return the entry of a batch, or the reason why it is none: the others have responses."""
+    try:
+        return validate(value)
+    except ValidationError as error:
+        return error
 
 
 class BatchQuery(Strict):
     """Queries of any kind, each with its own response."""
 
-    queries: list[BatchItem] = Field(
+    queries: list[Annotated[BatchItem, WrapValidator(_or_error)]] = Field(
         description="The queries.", min_length=1, max_length=SETTINGS.max_batch
     )
+
+    @property
+    def entries(self) -> list[BatchItem | ValidationError]:
+        """The queries; an invalid entry is the reason why it is invalid."""
+        return [*self.queries]
 
 
 class BatchItemAnswer(Answer):
