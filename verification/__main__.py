@@ -1,18 +1,20 @@
-"""Run all cases against the service, and write the table to a page."""
+"""Run all cases against the service, and write the page and, beside it, the table of all cases."""
 
 import sys
 from pathlib import Path
 
 from tests.conftest import running_client
 
-from verification.run import page, results
+from verification.run import page, results, table
 
 
 def main() -> int:
-    """Write the page, and return 1 if a case misses its bound."""
+    """Write page and table, and return 1 if a case misses its bound."""
     with running_client() as client:
         rows = results(client)
-    Path(sys.argv[1]).write_text(page(rows), "utf-8")
+    target = Path(sys.argv[1])
+    target.write_text(page(rows), "utf-8")
+    target.with_suffix(".csv").write_text(table(rows), "utf-8")
     missed = [row for row in rows if not row.met]
     for row in missed:
         print(f"{row.case.source} {row.case.case}: {row.deviation:.1e} > {row.case.bound:.0e}")

@@ -10,7 +10,7 @@ mpmath.mp.dps = 30
 
 # Bound for closed forms: the rounding error of the reference's inputs and of the service.
 ROUNDING: Final = 1e-12
-# Bound for quantities that the service integrates, at its default rtol.
+# Bound for quantities that the service integrates.
 QUADRATURE: Final = 1e-10
 # Indices of a number in a response, from its name on.
 Place = tuple[str | int, ...]

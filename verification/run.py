@@ -1,5 +1,7 @@
-"""Responses of the service to all cases, and the page that compares them."""
+"""Responses of the service to all cases, the table that compares them, and its summary."""
 
+import csv
+import io
 import json
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -26,6 +28,11 @@ from verification.sources import SOURCES
 
 # Paragraphs of the page, wrapped when they are written.
 _NOTES: Final = (
+    (
+        "[verification.csv](verification.csv) lists every case with its equation, reference value "
+        "and deviation. The table of sources has the bound and the deviation of the case that "
+        "comes closest to its bound."
+    ),
     (
         "A published reference value is printed in its source, or a closed form of the source "
         "evaluated with 30 digits in `verification/`. Deviations, bounds and uncertainties of the "
@@ -97,9 +104,30 @@ def results(client: Client) -> list[Row]:
     return rows
 
 
+def in_order(rows: Iterable[Row]) -> list[Row]:
+    """Return the rows in the order of their sources."""
+    return sorted(rows, key=lambda row: list(SOURCES).index(row.case.source))
+
+
+def table(rows: Iterable[Row]) -> str:
+    """Return the CSV table of all cases."""
+    text = io.StringIO()
+    lines = csv.writer(text, lineterminator="\n")
+    lines.writerow(
+        ("source", "equation", "case", "reference", "uncertainty", "bound", "deviation", "met")
+    )
+    for row in in_order(rows):
+        case = row.case
+        sizes = _size(case.uncertainty, 0), _size(case.bound, 0), _size(row.deviation, _ROUNDING)
+        reference = f"{float(case.expected):.9g}"
+        met = "yes" if row.met else "no"
+        lines.writerow((case.source, case.equation, case.case, reference, *sizes, met))
+    return text.getvalue()
+
+
 def page(rows: Iterable[Row]) -> str:
-    """Return the page with one table of all cases."""
-    rows = sorted(rows, key=lambda row: list(SOURCES).index(row.case.source))
+    """Return the page with a summary of the cases of each source."""
+    rows = in_order(rows)
     used = [key for key in SOURCES if any(row.case.source == key for row in rows)]
     met = sum(row.met for row in rows)
     own = sum(row.case.source in _OWN for row in rows)
@@ -112,19 +140,16 @@ def page(rows: Iterable[Row]) -> str:
     lines = ["# Verification", ""]
     for text in (summary, *_NOTES):
         lines += [fill(text, 120), ""]
-    lines += [
-        "| source | equation | case | reference | uncertainty | bound | deviation | |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
-    lines += [
-        f"| {row.case.source} | {row.case.equation} | {row.case.case} "
-        f"| {float(row.case.expected):.9g} | {_size(row.case.uncertainty, 0)} "
-        f"| {_size(row.case.bound, 0)} | {_size(row.deviation, _ROUNDING)} "
-        f"| {'met' if row.met else '**missed**'} |"
-        for row in rows
-    ]
-    lines += ["", "## Sources", "", "| key | source |", "|---|---|"]
-    lines += [f"| {key} | {SOURCES[key]} |" for key in used]
+    heading = "| key | source | cases | bound | deviation |"
+    lines += ["## Sources", "", heading, "|---|---|---|---|---|"]
+    for key in used:
+        own_rows = [row for row in rows if row.case.source == key]
+        # The bounds of a source differ: the row closest to its bound stands for them.
+        worst = max(own_rows, key=lambda row: row.deviation / row.case.bound)
+        lines.append(
+            f"| {key} | {SOURCES[key]} | {len(own_rows)} "
+            f"| {_size(worst.case.bound, 0)} | {_size(worst.deviation, _ROUNDING)} |"
+        )
     return "\n".join(lines) + "\n"
 
 

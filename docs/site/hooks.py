@@ -18,8 +18,6 @@ ROOT_FILES: Final = {
     "contributing.md": "CONTRIBUTING.md",
     "changelog.md": "CHANGELOG.md",
 }
-# Their columns need the width, and their numbers are found too often.
-LONG_TABLES: Final = {"verification.md"}
 _FORMULA: Final = re.compile(
     r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</(?:span|div)>', re.DOTALL
 )
@@ -37,10 +35,8 @@ def on_files(files: Files, config: Any) -> Files:
     return files
 
 
-def on_page_markdown(markdown: str, page: Any, **_: object) -> str:
+def on_page_markdown(markdown: str, **_: object) -> str:
     """Lead links to files of the root folder to their pages."""
-    if page.file.src_uri in LONG_TABLES:
-        page.meta |= {"hide": ["toc"], "search": {"boost": 0.5}}
     for target, name in ROOT_FILES.items():
         markdown = markdown.replace(f"](../{name}", f"]({target}")
     return markdown
