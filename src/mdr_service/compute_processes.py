@@ -212,7 +212,7 @@ class ComputePool:
     ) -> _Result:
         """Return the result of a function of a module, computed in a process.
 
-        The limit of the computation is `seconds`, by default that of a query.
+        `seconds` limits the time of the computation, by default to `budget_seconds`.
 
         Raises ServiceError if the queue is full, the wait or the computation takes too long, or
         the process is lost; besides all that the function raises.

@@ -90,7 +90,7 @@ def _range(text: str) -> tuple[str, float]:
 
 
 def _preference(media_type: str, ranges: dict[str, float]) -> float:
-    """Return the weight of a media type, that of the most specific range (RFC 9110, 12.5.1)."""
+    """Return the weight of the most specific range for a media type (RFC 9110, 12.5.1)."""
     main_type = media_type.partition("/")[0]
     for media_range in (media_type, f"{main_type}/*", "*/*"):
         if media_range in ranges:

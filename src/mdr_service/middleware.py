@@ -247,7 +247,7 @@ async def _http_exception(request: Request, error: HTTPException) -> Response:
 
 
 def _allowed(request: Request) -> str:
-    """Return the methods of all routes of a path; the framework names those of one."""
+    """Return the methods of all routes of a path; the framework lists one route only."""
     scope = {**request.scope, "method": ""}
     routes = [route for route in request.app.routes if isinstance(route, Route)]
     methods = [

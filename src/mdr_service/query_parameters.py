@@ -62,10 +62,10 @@ _LOADS: Final = frozenset({"load", "tangential", "oscillation"})
 _RENAMED: Final = {"cycles.normal.amplitude": "normal_amplitude", "radius": "r"}
 _TEXTS: Final = {
     "profile.kind": "Kind of profile; POST takes series and tables as well",
-    "radius": "Radius r of the fields; `radius` is that of the profile [length]",
+    "radius": "Radius r of the fields; `radius` belongs to the profile [length]",
 }
 _BODIES: Final = (
-    "youngs_modulus_1 and poissons_ratio_1 (and those of body 2, which is rigid without them)"
+    "youngs_modulus_1 and poissons_ratio_1, and the same of body 2, which is rigid without them"
 )
 _CYCLES: Final = frozenset({"cycles", "cycles.normal", "cycles.tangential"})
 

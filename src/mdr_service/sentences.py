@@ -65,7 +65,7 @@ def request_model(name: str) -> _Model | None:
 def path(error: ErrorDetails) -> Path:
     """Return the path into the request: the location without the branches of unions."""
     location = error["loc"]
-    # The name of a member that there is not is the client's own, even that of a branch.
+    # An unknown member keeps the client's spelling, in a branch of a union too.
     known = len(location) - (error["type"] == "extra_forbidden")
     steps = [step for at, step in enumerate(location) if at >= known or step not in BRANCHES]
     if steps[:1] == ["profile"]:

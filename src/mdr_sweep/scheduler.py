@@ -32,13 +32,13 @@ _SETTINGS: Final = {
 def in_workers(
     spec: Spec, chunks: Iterable[Chunk], address: str | None, processes: int
 ) -> Generator[Chunk, None, None]:
-    """Yield each chunk as it is completed by workers; Dask solves those of lost workers again.
+    """Yield each chunk as workers complete it; Dask repeats the chunks of lost workers.
 
     Parameters
     ----------
     spec : the sweep.
     chunks : index and cases of each chunk.
-    address : that of a Dask scheduler; None to start workers on this machine.
+    address : address of a Dask scheduler; None to start workers on this machine.
     processes : number of workers to start.
     """
     distributed = import_module("distributed")

@@ -25,9 +25,8 @@ ONLY_IF_NAMED: Final[Mapping[str, tuple[str, ...]]] = {
     "tangential": ("maximum_pressure", "maximum_shear_stress", "model_error", "data_error"),
     "wear": ("model_error",),
 }
-"""Quantities that are computed if they are named: maxima of fields, which take a search and can be
-infinite, `model_error`, `data_error`, NaN without a table, and those of adhesive contacts, NaN
-without adhesion."""
+"""Quantities that are computed if they are named. Maxima of fields take a search and can be
+infinite; `data_error` is NaN without a table, and the pull-off NaN without adhesion."""
 WARNING, ERROR = "warning", "error"
 TEXTS: Final = frozenset({"regime", WARNING, ERROR})
 """Columns of the result that are not numbers."""

@@ -34,7 +34,7 @@ from mdr_sweep.tables import SUFFIXES, Grid, Source, Table, write
 
 # Interval of progress reports into a log [s].
 _LOG_SECONDS: Final = 30.0
-_UNITS: Final = "any consistent system, that of the input: with m and N, pressures are in Pa"
+_UNITS: Final = "the consistent system of the input: with m and N, pressures are in Pa"
 # Numbers in an error, which vary from case to case; the steps of a JSON pointer follow a slash.
 _NUMBER: Final = re.compile(r"(?<![\w/.])[-+]?[0-9][\w.+-]*")
 

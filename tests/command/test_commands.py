@@ -1,4 +1,4 @@
-"""`mdr` would refuse valid arguments, start slowly, or help with what it has not."""
+"""`mdr` accepts valid arguments, starts quickly and documents each of its commands."""
 
 import json
 import os

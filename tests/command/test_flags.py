@@ -1,4 +1,4 @@
-"""Options, files or the list of profiles of `mdr` would give another query than the JSON."""
+"""Options, files and the list of profiles of `mdr` give the query that the JSON gives."""
 
 import json
 import math

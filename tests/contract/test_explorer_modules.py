@@ -1,4 +1,4 @@
-"""The explorer would compute, name or link otherwise than the service."""
+"""The explorer computes, names and links as the service does."""
 
 import json
 import math

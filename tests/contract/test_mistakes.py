@@ -1,6 +1,6 @@
-"""A mistake of a newcomer on the command line or in Python would get an error without the remedy.
+"""Errors of a newcomer on the command line or in Python name the remedy.
 
-The expectations were written first, as what a reader would have to be told to continue.
+The expectations were written first: they are the words that a reader needs to continue.
 """
 
 import json

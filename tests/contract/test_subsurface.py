@@ -1,4 +1,4 @@
-"""A format of `/v1/subsurface`, or a request of its page, would not be answered."""
+"""Every format of `/v1/subsurface`, and every request of its page, has a response."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A connection would not be accepted, or be kept after a request that spoils it."""
+"""A connection is accepted, and closed after a request that spoils it."""
 
 import asyncio
 import http.client

@@ -1,4 +1,4 @@
-"""A process that ends, stops or fails to start would cost more than its own request."""
+"""A process that ends, stops or fails to start costs no more than its own request."""
 
 import asyncio
 import http.client

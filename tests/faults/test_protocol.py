@@ -1,4 +1,4 @@
-"""Headers, pipelining, upgrades or slow clients would exceed the limits of the protocol."""
+"""Headers, pipelining, upgrades and slow clients stay within the limits of the protocol."""
 
 import http.client
 import json

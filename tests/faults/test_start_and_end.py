@@ -1,4 +1,4 @@
-"""The service would start on wrong settings, or end without its answers."""
+"""The service refuses wrong settings at the start, and sends its responses before it ends."""
 
 import http.client
 import json

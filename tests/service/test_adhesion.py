@@ -1,4 +1,4 @@
-"""Adhesion over HTTP would differ from the core, or errors point elsewhere."""
+"""Adhesion over HTTP has the results of the core, and errors point into the request."""
 
 from __future__ import annotations
 

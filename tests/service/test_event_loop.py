@@ -1,4 +1,4 @@
-"""The event loop would do work of compute processes, or do it twice."""
+"""The event loop leaves long work to compute processes, and does its own work once."""
 
 import json
 

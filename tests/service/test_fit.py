@@ -1,4 +1,4 @@
-"""Fits over HTTP would differ from the core, or errors point elsewhere."""
+"""Fits over HTTP have the results of the core, and errors point into the request."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""A table or picture would be malformed, or an unknown media type accepted."""
+"""Tables and pictures are well-formed, and unknown media types are rejected."""
 
 import csv
 import io

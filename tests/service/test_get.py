@@ -1,4 +1,4 @@
-"""GET would answer otherwise than the equivalent POST, or its errors point elsewhere."""
+"""GET returns the response of the equivalent POST, and its errors name the parameter."""
 
 import json
 import pickle

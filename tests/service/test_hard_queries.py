@@ -1,4 +1,4 @@
-"""A query that once failed, erred or ran long would do so again."""
+"""Queries that once failed, erred or ran long have finite results or a pointer."""
 
 import json
 from pathlib import Path

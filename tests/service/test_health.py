@@ -1,4 +1,4 @@
-"""A service whose compute processes do not compute would say that it is ready."""
+"""A service is ready only if its compute processes compute."""
 
 import pytest
 

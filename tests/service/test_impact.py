@@ -1,4 +1,4 @@
-"""Impacts over HTTP would differ from the core, or errors point elsewhere."""
+"""Impacts over HTTP have the results of the core, and errors point into the request."""
 
 import csv
 import io

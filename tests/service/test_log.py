@@ -1,4 +1,4 @@
-"""A log line would not be JSON, or a lost reader of the log would stop the service."""
+"""Every log line is JSON, and a lost reader of the log does not stop the service."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Long bodies, errors or shutdown would pass the middleware unanswered."""
+"""Long bodies, errors and shutdown get a response from the middleware."""
 
 import asyncio
 import json

@@ -1,4 +1,4 @@
-"""A picture would show other numbers, names or units than the response."""
+"""A picture shows the numbers, names and units of the response."""
 
 import json
 import re

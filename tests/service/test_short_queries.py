@@ -1,4 +1,4 @@
-"""A long query would block the event loop, or a size exceed its bound."""
+"""Queries on the event loop are short, and sizes have bounds."""
 
 import json
 from time import thread_time

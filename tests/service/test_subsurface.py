@@ -1,4 +1,4 @@
-"""Subsurface stresses over HTTP would differ from the core, or errors point elsewhere."""
+"""Stresses over HTTP have the results of the core, and errors point into the request."""
 
 from __future__ import annotations
 

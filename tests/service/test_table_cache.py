@@ -1,4 +1,4 @@
-"""A table would be fitted at every query, or a kept one would answer for another."""
+"""A table is fitted once, and a fit in the cache answers for its own table only."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Wear over HTTP would differ from the core, or give quantities not requested."""
+"""Wear over HTTP has the results of the core, and only the quantities requested."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Time limits, queue or ends of compute processes would cost other requests."""
+"""Time limits, the queue and ends of compute processes do not affect other requests."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""A wrong query would get no pointer, no remedy, a long response or one that repeats the input."""
+"""A wrong query gets a pointer, a remedy and a short response without its input."""
 
 import json
 import re

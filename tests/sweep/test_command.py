@@ -1,4 +1,4 @@
-"""Arguments, input or output of `mdr sweep` would be refused or mistaken."""
+"""`mdr sweep` reads valid arguments and input, and writes the output that they describe."""
 
 import csv
 import datetime as dt

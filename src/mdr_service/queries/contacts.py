@@ -177,8 +177,8 @@ def response(
     values : members of the response, numbers that are checked.
     unchecked : members that are no lists of numbers.
     infinite : True for the members, or their entries, that can be infinite.
-    method, error : method and error estimate of the values, where they are not those of the source.
-    warnings : warnings about the values, besides those of the source.
+    method, error : method and error estimate of the values, if they differ from the source.
+    warnings : warnings about the values alone.
 
     Raises
     ------

@@ -78,7 +78,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     at_singular = np.isin(radius, [0.0, *radii, *edges])
     infinite: dict[str, Flags] = dict.fromkeys(("pressure", "shear_stress"), at_singular)
     method = _method(source, contact, query.quantities)
-    # The error of the edges adds to that of the integrals.
+    # The errors of the edges and of the integrals add up.
     integrated = 0.0 if method == "closed_form" else TIGHTEST
     at_edges = max(
         fields.edge_error(contact if name == "pressure" else partial or contact, name, radius)

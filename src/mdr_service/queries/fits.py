@@ -20,7 +20,7 @@ def solve_fit(query: FitQuery) -> Fit:
         reason = "e_star is fitted: leave it out" if query.has("material") else "is needed"
         raise InputError(("material",), f"{reason}, or change `fit`")
     if query.has("material") and query.material.model_fields_set & ADHESION:
-        detail = "is no part of a fit, whose curve is that of a contact without adhesion"
+        detail = "is not an input of a fit: add work_of_adhesion to fit to determine it"
         raise InputError(("material", "work_of_adhesion"), detail)
     known = query.material if query.has("material") else None
     return fit.solve(

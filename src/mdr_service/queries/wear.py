@@ -73,7 +73,6 @@ def solve_evolution(query: EvolutionQuery) -> WearEvolution:
     _require_radii(query)
     try:
         return wear_evolution.solve(
-            # The tolerance is that of the integration over the cycles.
             normal_contact.solve(**body(query), **control(query.load)),
             **friction(query),
             **control(query.oscillation),

@@ -114,7 +114,7 @@ def thickness() -> Any:
     return positive(
         "length",
         "Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the "
-        "warning `thin_body`; the contact remains that of half-spaces. Without it a `sphere` "
+        "warning `thin_body`; half-spaces remain the model of the contact. Without it a `sphere` "
         "counts as a ball of the thickness 2 `radius`, and other profiles as half-spaces",
         default=None,
     )
@@ -212,7 +212,7 @@ class Axes(NamedTuple):
     curves: str = ""
     """Member with a curve for each of its values."""
     in_order: bool = False
-    """True if the curve follows the order of the entries, and not that of the abscissa."""
+    """True if the curve joins the entries in their own order."""
     is_measured: bool = False
     """True if the first ordinate is fitted to measured values, and the second is what is left."""
 

@@ -77,8 +77,8 @@ class LoadedQuery(Query):
     friction_coefficient: float = friction(default=None)
     tangential: Tangential = left_out("Exactly one control, with `friction_coefficient`.")
     history: History = left_out(
-        "In place of `load` and `tangential`: load path; the fields are those of its end. With "
-        "`friction_coefficient`."
+        "In place of `load` and `tangential`: load path, at whose end the fields are computed. "
+        "With `friction_coefficient`."
     )
 
     @property

@@ -28,10 +28,12 @@ class FitQuery(Query):
     fit: Annotated[list[Fitted], OnceEach] = Field(
         default=["e_star", "contact_point"],
         description="Parameters to fit; all but the modulus are otherwise 0. With "
-        "`work_of_adhesion` the curve is that of unloading.",
+        "`work_of_adhesion` the curve is an unloading curve.",
         min_length=1,
     )
     noise: float = positive(
-        "force", "Standard deviation of the forces, by default that of the residuals", default=None
+        "force",
+        "Standard deviation of the forces, by default estimated from the residuals",
+        default=None,
     )
     body_thickness: float = thickness()
