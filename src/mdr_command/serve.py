@@ -13,7 +13,7 @@ from uvicorn.supervisors import Multiprocess
 
 from mdr_command import ExitStatus
 from mdr_service import observability
-from mdr_service.protocol import MAX_HEADER_BYTES, BoundedProtocol
+from mdr_service.protocol import BACKLOG, MAX_HEADER_BYTES, BoundedProtocol
 from mdr_service.settings import SETTINGS
 
 
@@ -47,6 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
         # starve beside some hundred that send small queries. A query takes as long with either.
         loop="asyncio",
         http=BoundedProtocol,
+        backlog=BACKLOG,
         h11_max_incomplete_event_size=MAX_HEADER_BYTES,
         # Without a limit, a client that never reads its response would prevent the shutdown.
         timeout_graceful_shutdown=SETTINGS.shutdown_seconds,

@@ -29,6 +29,8 @@ from mdr_service.settings import SETTINGS
 
 # Ids that a client can give to its requests.
 _ID: Final = re.compile(r"[A-Za-z0-9._~+/=-]{1,64}")
+# Scheme and authority of a target in absolute form.
+_ABSOLUTE: Final = re.compile(r"https?://[^/]*", re.IGNORECASE)
 # Status in the log for a client that disconnected before the response, as in nginx.
 _CLIENT_CLOSED_REQUEST: Final = 499
 _ALWAYS: Final = (
@@ -107,6 +109,9 @@ class ServiceMiddleware:
         if scope["method"] == "HEAD":
             # The server leaves out the body.
             scope = {**scope, "method": "GET"}
+        if found := _ABSOLUTE.match(scope["path"]):
+            # The form of a request to a proxy, which a server accepts as well: RFC 9112, 3.2.2.
+            scope = {**scope, "path": scope["path"][found.end() :] or "/"}
         try:
             await self.app(scope, receive, sender)
         except ClientDisconnect:

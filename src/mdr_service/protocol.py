@@ -7,6 +7,7 @@ is pinned for that reason; tests check that every overridden method exists and i
 """
 
 import re
+import resource
 import socket
 import sys
 from asyncio import AbstractEventLoop, Transport
@@ -25,6 +26,11 @@ from mdr_service.settings import SETTINGS
 
 MAX_HEADER_BYTES: Final = 16_384
 """Maximum length of request line and headers, by default the one of h11 and of Node.js as well."""
+BACKLOG: Final = 128
+"""Most connections that wait in the kernel; the event loop accepts as many in one turn."""
+# Descriptors kept free: for files and compute processes, and for the connections of four turns,
+# which pass from the acceptance of one to the end of another that makes room for it.
+_FREE_DESCRIPTORS: Final = 64 + 4 * BACKLOG
 LINGER_SECONDS: Final = 1.0
 """Time for a rejected client to finish sending and read the response."""
 # Send buffer of the kernel, which by default keeps megabytes of each response. The kernel sends
@@ -50,7 +56,7 @@ class BoundedProtocol(H11Protocol):
         super().__init__(config, server_state, app_state, _loop)
         self._rejected = False
         self._await_request()
-        self._arrival = self.loop.call_at(self._due, self._check_arrival)
+        self._arrival = self.loop.call_at(self.due, self._check_arrival)
 
     # uvicorn has the narrower type as well.
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
@@ -60,6 +66,26 @@ class BoundedProtocol(H11Protocol):
         if option := getattr(socket, "TCP_USER_TIMEOUT", None):
             # Linux only.
             link.setsockopt(socket.IPPROTO_TCP, option, ceil(1e3 * SETTINGS.request_seconds))
+        most, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+        if len(self.connections) > most - min(_FREE_DESCRIPTORS, most // 2):
+            self._make_room()
+
+    @property
+    def is_idle(self) -> bool:
+        """True before a request, and after its response, until the connection is closed."""
+        answered = self.cycle is None or self.cycle.response_complete
+        open_ = not self.transport.is_closing()
+        return open_ and answered and self.conn.their_state is h11.IDLE
+
+    def _make_room(self) -> None:
+        """Close a connection that has been idle for long, or this one if all others are busy.
+
+        Without a free descriptor the event loop would accept no connection, and log that some
+        hundred times a second.
+        """
+        own = cast("set[BoundedProtocol]", self.connections)
+        idle = [each for each in own if each is not self and each.is_idle]
+        min(idle, key=lambda each: each.due, default=self).transport.close()
 
     def connection_lost(self, exc: Exception | None) -> None:
         self._arrival.cancel()
@@ -71,17 +97,17 @@ class BoundedProtocol(H11Protocol):
 
         The next request may have been sent ahead.
         """
-        self._due = self.loop.time() + SETTINGS.request_seconds
+        self.due = self.loop.time() + SETTINGS.request_seconds
 
     def _check_arrival(self) -> None:
         """Close the connection if its client sends too slowly."""
         state, kept_alive = self.conn.their_state, self.timeout_keep_alive_task is not None
-        if self.loop.time() >= self._due:
+        if self.loop.time() >= self.due:
             if state in {h11.IDLE, h11.SEND_BODY} and not kept_alive and not self._rejected:
                 self._reject_slow(in_headers=state is h11.IDLE)
                 return
             self._await_request()
-        self._arrival = self.loop.call_at(self._due, self._check_arrival)
+        self._arrival = self.loop.call_at(self.due, self._check_arrival)
 
     def _reject_slow(self, *, in_headers: bool) -> None:
         begun = in_headers and self.conn.trailing_data[0]

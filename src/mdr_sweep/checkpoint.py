@@ -1,15 +1,19 @@
 """Checkpoint of a sweep: a directory beside the result with the completed chunks.
 
 No file in it is ever incomplete: a file is written under another name, forced to the disk, and
-renamed. The directory is deleted once the result is written.
+renamed. The name of a chunk has a digest of sweep, index and content, so that a chunk that was
+damaged, copied or belongs to another sweep is detected. The directory is deleted once the result is
+written.
 """
 
 import fcntl
 import json
 import os
+import re
 import shutil
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from hashlib import sha256
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,6 +22,8 @@ import pyarrow as pa
 from mdr_sweep.spec import UsageError
 
 _UNFINISHED: Final = ".unfinished"
+# Index and digest of a chunk.
+_CHUNK: Final = re.compile(r"(\d{12})-([0-9a-f]{16})\.arrow")
 
 
 class Checkpoint:
@@ -28,19 +34,28 @@ class Checkpoint:
         self.target = target.resolve()
         self.folder = self.target.with_name(self.target.name + ".work")
         self._manifest = self.folder / "manifest.json"
+        self._sweep = ""
 
     @property
     def manifest(self) -> dict[str, Any]:
-        """Manifest of the sweep of the stored chunks; empty if there are none."""
+        """Manifest of the sweep of the stored chunks; empty if there are none.
+
+        Raises UsageError if it is damaged.
+        """
         if not self._manifest.exists():
             return {}
-        return dict(json.loads(self._manifest.read_text()))
+        with suppress(ValueError, TypeError, KeyError):
+            found = dict(json.loads(self._manifest.read_bytes()))
+            if isinstance(found["chunk"], int) and found["chunk"] > 0:
+                return found
+        raise _damaged(self._manifest)
 
     @contextmanager
     def opened(self, manifest: Mapping[str, Any], *, restart: bool) -> Iterator[set[int]]:
         """Lock the directory, create it if necessary, and yield the indices of completed chunks.
 
-        Raises UsageError if another process uses it, or if it belongs to another sweep.
+        Raises UsageError if another process uses it, if it belongs to another sweep, or if a chunk
+        is damaged.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         with (self.folder / "lock").open("w") as lock:
@@ -60,21 +75,38 @@ class Checkpoint:
                 path.unlink()
             with self._whole(self._manifest) as path:
                 path.write_text(text)
-            yield {int(path.stem) for path in self.folder.glob("*.arrow")}
+            self._sweep = text
+            yield {index for index, _ in self._stored()}
 
     def put(self, index: int, batch: pa.RecordBatch) -> None:
         """Store a completed chunk."""
-        with (
-            self._whole(self.folder / f"{index:012d}.arrow") as path,
-            pa.ipc.new_file(str(path), batch.schema) as writer,
-        ):
+        buffer = pa.BufferOutputStream()
+        with pa.ipc.new_file(buffer, batch.schema) as writer:
             writer.write_batch(batch)
+        content = buffer.getvalue().to_pybytes()
+        name = f"{index:012d}-{self._digest(index, content)}.arrow"
+        with self._whole(self.folder / name) as path:
+            path.write_bytes(content)
 
-    def chunks(self) -> Iterator[pa.RecordBatch]:
-        """Yield all chunks in their order."""
-        for path in sorted(self.folder.glob("*.arrow")):
-            with pa.memory_map(str(path)) as file:
-                yield pa.ipc.open_file(file).get_batch(0)
+    def chunks(self, count: int) -> Iterator[pa.RecordBatch]:
+        """Yield all chunks in their order; raise UsageError unless there are `count` sound ones."""
+        stored = self._stored()
+        for expected in range(count):
+            index, content = next(stored, (count, b""))
+            if index != expected:
+                raise _damaged(self.folder)
+            yield pa.ipc.open_file(content).get_batch(0)
+
+    def _stored(self) -> Iterator[tuple[int, bytes]]:
+        """Yield index and content of the stored chunks in their order."""
+        for path in sorted(self.folder.glob("*.arrow*")):
+            name, content = _CHUNK.fullmatch(path.name), path.read_bytes()
+            if not name or self._digest(int(name[1]), content) != name[2]:
+                raise _damaged(path)
+            yield int(name[1]), content
+
+    def _digest(self, index: int, content: bytes) -> str:
+        return sha256(b"%s %d %s" % (self._sweep.encode(), index, content)).hexdigest()[:16]
 
     @contextmanager
     def result(self) -> Iterator[Path]:
@@ -94,3 +126,7 @@ class Checkpoint:
             path.replace(target)
         finally:
             path.unlink(missing_ok=True)
+
+
+def _damaged(path: Path) -> UsageError:
+    return UsageError(f"{path} is damaged or incomplete; use --restart to discard all chunks")

@@ -54,7 +54,8 @@ def run(arguments: Namespace) -> int:
     identity = asdict(spec) | {"input": source.identity, "versions": versions()}
     manifest = identity | {"chunk": chunk, "format": arguments.out.suffix}
     with checkpoint.opened(manifest, restart=arguments.restart) as done:
-        missing = [index for index in range(-(-source.rows // chunk)) if index not in done]
+        count = -(-source.rows // chunk)
+        missing = [index for index in range(count) if index not in done]
         chunks = zip(missing, source.batches(chunk, missing), strict=True)
         if arguments.scheduler or estimate.processes > 1:
             workers = arguments.scheduler, estimate.processes
@@ -68,9 +69,11 @@ def run(arguments: Namespace) -> int:
             for index, batch in solved:
                 checkpoint.put(index, batch)
                 bar.update(batch.num_rows)
-        failed, lines = summary(checkpoint.chunks())
+        failed, lines = summary(checkpoint.chunks(count))
         with checkpoint.result() as path:
-            write(path, arguments.out.suffix, checkpoint.chunks(), identity | {"units": _UNITS})
+            write(
+                path, arguments.out.suffix, checkpoint.chunks(count), identity | {"units": _UNITS}
+            )
     sys.stderr.write("".join(f"{line}\n" for line in lines))
     return SweepStatus.ALL_FAILED if failed == source.rows else SweepStatus.DONE
 

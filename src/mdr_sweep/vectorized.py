@@ -162,11 +162,12 @@ def _warnings(
 ) -> NDArray[Any]:
     """Return the codes of the warnings of each case, in the order of the service."""
     contact = source.normal
-    found = [*validity.findings(source, contact.material), *yields(query, source)]
+    found = validity.findings(source, contact.material)
     flags: dict[str, Any] = {each.code: each.where for each in found}
     flags |= {notice.code: True for notice in contact.profile.notices}
     flags |= {each.code: each.where for each in contact.findings}
     flags["accuracy"] = source.error_estimates > ACCURACY
+    flags |= {each.code: each.where for each in yields(query, source)}
     codes = np.full(size, None)
     for code, where in flags.items():
         here = np.broadcast_to(where, (size,))

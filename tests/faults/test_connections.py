@@ -65,6 +65,24 @@ def ask(connection: http.client.HTTPConnection, body: bytes) -> tuple[int, str |
     return response.status, response.getheader("content-type"), response.read()
 
 
+@pytest.mark.parametrize(
+    ("target", "status"),
+    [
+        ("http://service.example/health", 200),
+        ("HTTPS://service.example:8000/health?x=http://y/", 200),
+        ("http://service.example", 200),
+        ("http://service.example/nowhere", 404),
+    ],
+)
+def test_target_in_absolute_form_is_accepted(
+    connection: http.client.HTTPConnection, target: str, status: int
+) -> None:
+    connection.request("GET", target)
+    response = connection.getresponse()
+    assert response.status == status
+    response.read()
+
+
 def test_internal_error_is_reported_and_keeps_the_connection(
     connection: http.client.HTTPConnection,
     monkeypatch: pytest.MonkeyPatch,

@@ -249,8 +249,9 @@ def gauge(port: int, name: str) -> float:
 def test_server_without_file_descriptors_recovers() -> None:
     port = free_port()
     with running(service(port), port) as process:
-        resource.prlimit(process.pid, resource.RLIMIT_NOFILE, (40, 40))
         connections = [socket.create_connection(("127.0.0.1", port)) for _ in range(60)]
+        assert ready(port) == 200
+        resource.prlimit(process.pid, resource.RLIMIT_NOFILE, (40, 40))
         for each in computing(process.pid):
             each.kill()
         held = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE)
@@ -278,6 +279,17 @@ def test_server_without_file_descriptors_recovers() -> None:
         assert ask(port, "/v1/tangential/history", LONGER)[0] == 200
         wait_for(lambda: len(computing(process.pid)) == 2)
         held.close()
+
+
+def test_idle_connections_make_room_for_new_ones() -> None:
+    port, limit = free_port(), 256
+    with running(service(port), port) as process:
+        resource.prlimit(process.pid, resource.RLIMIT_NOFILE, (limit, limit))
+        idle = [socket.create_connection(("127.0.0.1", port)) for _ in range(2 * limit)]
+        assert [ready(port) for _ in range(20)] == [200] * 20
+        assert psutil.Process(process.pid).num_fds() < limit
+        for each in idle:
+            each.close()
 
 
 def test_workers_end_with_a_killed_supervisor() -> None:
