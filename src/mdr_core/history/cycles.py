@@ -2,16 +2,21 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
 from mdr_core.errors import AccuracyError, InputError
+from mdr_core.history.load_path import are_of_different_pairs
 from mdr_core.history.solver import LoadHistory, solve
 from mdr_core.materials import Material
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 from mdr_core.validation import UNRESOLVED
+
+# Samples with which the energy of nine curved cycles in ten is within 0.1 %; the error falls with
+# the square of their number. Source: http.md, Cost of a coarse path.
+_ON_CURVES: Final = 20
 
 
 @dataclass(frozen=True, repr=False)
@@ -58,7 +63,7 @@ def cycles(
     tangential_displacement: float | None = None,
     tangential_force: float | None = None,
     count: int = 1,
-    samples_per_step: int = 1,
+    samples_per_step: int | None = None,
     rtol: float = 1e-10,
 ) -> LoadCycles:
     """Return cycles of tangential load, the normal load constant or in phase with it.
@@ -75,7 +80,8 @@ def cycles(
     normal_amplitude : of the same quantity, >= 0, at most the mean.
     tangential_displacement, tangential_force : exactly one, the amplitude [length], [force].
     count : number of cycles.
-    samples_per_step : evenly spaced samples on each of the 2 + 2 `count` load steps.
+    samples_per_step : evenly spaced samples on each of the 2 + 2 `count` load steps; by default
+        see `default_samples`.
     rtol : relative accuracy, as for `solve`.
 
     Returns
@@ -100,6 +106,10 @@ def cycles(
     True
     """
     mean = indentation_depth if normal_force is None else normal_force
+    if samples_per_step is None:
+        normal = "indentation_depth" if normal_force is None else "normal_force"
+        tangential = "tangential_displacement" if tangential_force is None else "tangential_force"
+        samples_per_step = default_samples(normal, tangential, normal_amplitude)
     if mean is not None and not 0 <= normal_amplitude <= mean:
         raise InputError(("history", "normal", "amplitude"), "must lie between 0 and the mean")
     if count < 1:
@@ -130,3 +140,18 @@ def cycles(
         )
         raise AccuracyError(detail, ("cycles", "tangential"))
     return LoadCycles(history.path, e_star, history.results, rtol, count)
+
+
+def default_samples(normal: str, tangential: str, normal_amplitude: float) -> int:
+    """Return the samples on each load step of cycles if their number is not given.
+
+    One sample is exact on straight steps. On curved steps, where controls of different pairs both
+    change, 20 samples follow the curve.
+
+    Parameters
+    ----------
+    normal, tangential : names of the controls, such as ``"normal_force"``.
+    normal_amplitude : amplitude of the normal control.
+    """
+    curved = normal_amplitude > 0 and are_of_different_pairs(normal, tangential)
+    return _ON_CURVES if curved else 1

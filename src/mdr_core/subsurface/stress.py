@@ -145,7 +145,7 @@ def on_rings(under: Foundation, place: Rings, nu: float) -> StressTensor:
     origin = (z == 0) & (r == 0) & ~infinite
     if origin.any() and not load.profile.has_no_partial_slip:
         # Powers next to a cone approach the tractions there slowly. Om_r/r is a half of V_z.
-        whole = load._replace(slope=np.ones_like(load.slope), arcs=())
+        whole = load._replace(slope=np.ones_like(load.slope))
         p, tau = (each.stress(np.zeros(1)) for each in (whole, load))
         moments[:, origin], moments[0, origin] = 0.0, -np.pi * (p + 1j * under.friction * tau)
         moments[4, origin] = moments[0, origin] / 2

@@ -8,7 +8,7 @@ from mdr_core import fields
 from mdr_core import normal as normal_contact
 from mdr_core.elementwise import broadcast
 from mdr_core.errors import InputError
-from mdr_core.history import ContactState, LoadHistory
+from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
@@ -76,7 +76,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     at_singular = np.isin(radius, [0.0, *radii, *edges])
     infinite: dict[str, Flags] = dict.fromkeys(("pressure", "shear_stress"), at_singular)
     checked(query, values, infinite)
-    method = _method(source, contact, query.quantities)
+    method = _method(contact, query.quantities)
     # The error of the edges adds to that of the integrals.
     integrated = 0.0 if method == "closed_form" else TIGHTEST
     at_edges = max(
@@ -138,10 +138,7 @@ def _require_consistent(query: StressQuery) -> None:
     require_few_numbers(query)
 
 
-def _method(source: Contact, contact: NormalContact, names: list[Any]) -> str:
+def _method(contact: NormalContact, names: list[Any]) -> str:
     """Return the most expensive method of the fields."""
     closed = _FOUNDATION.union(contact.profile.closed_forms)
-    if isinstance(source, LoadHistory) and source.state.curved_segments:
-        # On nonlinear load paths shear fields are integrals.
-        closed -= SHEAR_FIELDS
     return contact.method if closed.issuperset(names) else "quadrature"

@@ -53,7 +53,7 @@ def solve_path(query: HistoryQuery | LoadedQuery, **more: Any) -> LoadHistory:
             **control(given.normal),
             **control(given.tangential),
             **more,
-            samples_per_step=given.samples_per_step,
+            samples_per_step=given.per_step,
             rtol=query.rtol,
         )
     except InputError as error:
@@ -82,6 +82,6 @@ def require_few_samples(query: HistoryQuery | LoadedQuery) -> None:
     path = query.path
     if path and path.samples > SETTINGS.max_length:
         name = "cycles" if query.has("cycles") else "history"
-        place = ("samples_per_step",) if path.samples_per_step > 1 else ()
+        place = ("samples_per_step",) if (path.samples_per_step or 1) > 1 else ()
         detail = f"the number of samples must not exceed {SETTINGS.max_length}"
         raise InputError((name, *place), detail)
