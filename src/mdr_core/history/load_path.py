@@ -190,7 +190,8 @@ class SampledPath:
     @property
     def load_points(self) -> LoadPoints:
         """One straight step to each sample, in normal coordinates and reduced tangential loads."""
-        return LoadPoints(*self.coordinates[:, 1:], self._continues)
+        normal, tangential = self.coordinates[:, 1:]
+        return LoadPoints(normal, tangential, self._continues)
 
     @cached_property
     def at_start(self) -> Polyline:

@@ -13,7 +13,7 @@ from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.elementwise import number
 from mdr_core.errors import InputError, Notice
 from mdr_core.history import load_path, slip_memory
-from mdr_core.history.contact_state import ContactState, unloaded
+from mdr_core.history.contact_state import ContactState, Edge, unloaded
 from mdr_core.history.load_path import UNLOADED, SampledPath, SavedState
 from mdr_core.history.slip_memory import Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
@@ -142,9 +142,14 @@ class LoadHistory(validity.ContactResults):
     def state(self) -> ContactState:
         """State of the contact at the end of the history."""
         line, (vertices, last) = self.results.last, self.results.last_vertices
+        force = vertices.conjugate
         if self.path.over_forces:
             line = self._over_depths(vertices.conjugate_step[last[1:]], line)
-        return replace(self.path.start, polyline=line)
+            force = vertices.tree.normal
+        state = replace(self.path.start, polyline=line)
+        edges = np.array([vertices.coordinate, force, vertices.shear])[:, last]
+        state.known_edges.extend(Edge(*map(number, edge)) for edge in edges.T.tolist())
+        return state
 
     @property
     def final_state(self) -> dict[str, Any]:

@@ -85,10 +85,10 @@ async def tangential(
 async def history(query: Annotated[HistoryQuery, _examples("history")], form: _Form) -> None:
     """Follow a load path from first contact, and return samples along it.
 
-    The controls vary linearly from point to point. Paths of depths and displacements, and of
-    normal and tangential forces, are solved exactly. Where a depth changes with a tangential force,
-    or a normal force with a displacement, the path is replaced by chords: the error is mostly 1e-9
-    to 1e-7 and within `error_estimate`. A negative depth is a separation, which erases the slip
+    Between two samples both loads vary linearly: the displacement with the depth, or the tangential
+    force with the normal force. Every such path is solved exactly. Where a depth changes with a
+    tangential force, or a normal force with a displacement, more `samples_per_step` follow the
+    curve on which these vary linearly. A negative depth is a separation, which erases the slip
     memory. A tangential force beyond µ F_N, at a point or between points, has no equilibrium and is
     rejected.
 
