@@ -1,4 +1,4 @@
-"""Impacts over HTTP would differ from the core, or errors point elsewhere."""
+"""Impacts over HTTP equal those of the core, and their errors point at the request."""
 
 import csv
 import io
