@@ -196,3 +196,24 @@ def test_a_batch_carries_states_on_and_tables_leave_them_out(client: Client, sta
     for media_type in ("csv", "npz", "svg"):
         responses = [client.post(f"{PATH}?format={media_type}", each) for each in (given, plain)]
         assert responses[0].content == responses[1].content, media_type
+
+
+def test_steps_of_a_cosimulation_are_exact_without_a_warning(client: Client) -> None:
+    """A mass slides and stops: the energy of the last steps is small beside that before."""
+    request = {
+        "profile": {"kind": "paraboloid", "radius": 0.01},
+        "material": {"e_star": 115e9, "g_star": 95e9},
+        "friction_coefficient": 0.3,
+        "return_state": True,
+    }
+    mass, time_step = 0.01, 2e-6
+    displacement, velocity = 0.0, 0.02
+    for _ in range(41):
+        load = {"normal_force": 10.0}, {"tangential_displacement": displacement}
+        request["history"] = {"normal": load[0], "tangential": load[1]}
+        answer = client.post(PATH, request).json()
+        assert answer["error_estimate"] < 5e-12
+        assert "accuracy" not in {warning["code"] for warning in answer["warnings"]}
+        request["initial_state"] = answer["final_state"]
+        velocity -= answer["tangential_force"][0] / mass * time_step
+        displacement += velocity * time_step

@@ -7,6 +7,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from mdr_core.doubles import ROUNDING
 from mdr_core.elementwise import number
 from mdr_core.history import slip_memory
 from mdr_core.history.slip_layout import NORMAL
@@ -187,6 +188,17 @@ class ContactState(Results):
         if self.profile.has_no_partial_slip:
             return np.zeros(0)
         return self.profile.contact_radius(self.coordinate[1:-1])
+
+    @property
+    def front_errors(self) -> Array:
+        """Errors of `slip_fronts` by the rounding of the forces that they follow from [length]."""
+        forces, fronts = (np.array([edge[i] for edge in self._edges]) for i in (1, 0))
+        if self.profile.has_no_partial_slip or fronts.size < 3:
+            return np.zeros(0)
+        moved = np.minimum(forces[1:-1] + ROUNDING * forces[-1], forces[-1])
+        ends = np.array([fronts[1:-1], self.profile.coordinate_from_reduced_force(moved)])
+        inner, outer = self.profile.contact_radius(ends)
+        return np.maximum(outer - inner, 0.0)
 
     @property
     def tangential_force(self) -> float:

@@ -190,6 +190,6 @@ def error_estimate(contact: Contact, x: ArrayLike, y: ArrayLike, z: ArrayLike) -
         return MOMENT_ERROR + rim_error(known, away) + 4 * contact.error_estimate
     for i, at in enumerate(known.radius):
         edge = Edges(*(part[i : i + 1] for part in known))
-        near = max(near, error_near(edge, at + np.hypot(r - at, z), root=True))
-    own = 0.0 if isinstance(contact, ContactState) else 4 * contact.error_estimate
+        near = max(near, error_near(edge, at - np.hypot(r - at, z), root=True))
+    own = 0.0 if isinstance(contact, ContactState) else 4 * fields.own_error(contact)
     return MOMENT_ERROR + own + near

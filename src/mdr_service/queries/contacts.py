@@ -200,9 +200,9 @@ def response_metadata(
     count = query.path.samples if isinstance(query, HistoryQuery) else query.loads
     # Fields at the end of a history are those of its last sample.
     known = own[-1:] if count == 1 else np.full(count, own)
-    found = [*warnings]
-    if source.error_estimate <= query.rtol < error:
-        # That of fields, which the source does not know.
+    # The source does not know the error of fields.
+    found = [notice for notice in warnings if notice.code != "accuracy"]
+    if error > query.rtol:
         found.append(normal_contact.not_reached(query.rtol, error))
     listed = [vars(notice) for notice in found]
     about = {"method": method, "error_estimate": error, "model_error": known}

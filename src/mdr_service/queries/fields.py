@@ -84,7 +84,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         for name in query.quantities
     )
     warnings = notices(query, source) + singular(radius, values, infinite)
-    error = max(source.error_estimate, integrated) + at_edges
+    error = max(fields.own_error(source), integrated) + at_edges
     return {"radius": radius} | values | response_metadata(query, source, method, error, warnings)
 
 
