@@ -96,7 +96,7 @@ class Impact(validity.ContactResults):
 
     @property
     def normal_rebound_velocity(self) -> Array:
-        """Velocity of separation [length/time]: that of approach, because the motion is elastic."""
+        """Velocity of separation [length/time]; the motion is elastic: the velocity of approach."""
         return self.normal_velocity
 
     @property
@@ -332,7 +332,7 @@ def _motion(scene: _Scene, count: int) -> _Motion:
     phi = sides[:-1] + width * _NODES[:, None]
 
     def slowed(s: Array) -> Array:
-        """Velocity over that before the impact."""
+        """Normal velocity over the velocity of approach."""
         stored = profile.reduced_energy(s) / profile.reduced_energy(number(end))
         return np.sqrt(np.maximum(1 - stored, 0.0))
 

@@ -263,5 +263,5 @@ def interval_moments(profile: Profile, *, over_forces: bool) -> IntervalMoments:
     return (_of_table if has_many_breaks(profile) else IntervalMoments)(profile, over_forces)
 
 
-# The sums between breaks take as long as a short history; those of 2000 points have 1 MB.
+# The sums between breaks take as long as a short history. For 2000 points they have 1 MB.
 _of_table: Final = lru_cache(maxsize=16)(IntervalMoments)

@@ -1,4 +1,4 @@
-"""A history under controls of different pairs is that of one pair through the same samples."""
+"""A path under controls of different pairs equals the path of one pair through its samples."""
 
 from __future__ import annotations
 

@@ -20,8 +20,8 @@ from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_core.validation import extremes, require_type
 
-# Largest error of a field by that of an edge, relative to its largest value, on a grid with room
-# enough: a tenth of the errors estimated elsewhere.
+# Largest error of a field by the error of an edge, relative to its largest value, on a grid with
+# room enough: a tenth of the errors estimated elsewhere.
 _GRID_ERROR: Final = 1e-12
 
 
@@ -86,7 +86,7 @@ def _near_axis(contact: NormalContact, c: Array, scale: Array) -> tuple[Array, A
 def edge_error(
     contact: NormalContact | TangentialContact | ContactState, name: str, radius: ArrayLike
 ) -> float:
-    """Return the error of a field by that of the edges, relative to its largest value [1].
+    """Return the error of a field by the errors of the edges, relative to its largest value [1].
 
     Edges are the contact radius and the slip fronts if they follow from a load. Radii within four
     units in the last place of an edge are excluded, because the relative error at a root is
@@ -139,7 +139,7 @@ def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
 
 
 def own_error(contact: NormalContact | TangentialContact | LoadHistory) -> float:
-    """Return the error of fields without that of the edges, relative to their largest value [1].
+    """Return the error of fields apart from `edge_error`, relative to their largest value [1].
 
     Next to full slip the stick radius is ill-conditioned, which `edge_error` contains.
     """

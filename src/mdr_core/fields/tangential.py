@@ -35,9 +35,10 @@ class Traction(NamedTuple):
     coordinate: Array
     """Contact coordinates of the ends, shape (n + 1,)."""
     radius: Array
-    """The same as radii [length]."""
+    """Radii of the ends [length], shape (n + 1,)."""
     width: Array
-    """Widths in the contact coordinate, shape (n,)."""
+    """Widths in the contact coordinate, shape (n,). The coordinate of a flat punch is its depth,
+    and all its springs carry the load of a depth `width`."""
     slope: Array
     """k [1], shape (n,)."""
     above: Array
@@ -119,7 +120,7 @@ def slip(
 ) -> Array:
     """Return the slip s(r) = u(r) - u_x of the surface in the contact [length].
 
-    It is the displacement u(r) of the surface less that of the body.
+    u(r) is the displacement of the surface, u_x the displacement of the body.
 
     s = -mu (E*/G*) sum (k_i - k_i-1) S(x_i-1; r), S the slip kernel; zero in the stick zone and
     outside the contact, negative for a positive displacement. In full slip the displacement
@@ -267,7 +268,6 @@ def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
         top, a, edge, c, width = places
         ends, radii, widths, slopes, above = [0.0, top], [flat, a], [top], [0.0], [0.0]
         if profile.has_no_partial_slip:
-            # The kernel of a flat punch, which has no slip annulus, reads the depth from the width.
             widths = [top if slides else width]
             slopes = [sign if widths[0] > 0 else 0.0]
         elif slides:

@@ -1,4 +1,4 @@
-"""States of many contacts of one profile, as of a discrete element method, and one step of all."""
+"""States of many contacts of one profile, for discrete elements, and one step of all of them."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -84,7 +84,7 @@ def advance_many(
 ) -> ContactStates:
     """Return the states of many contacts after one straight step of each, exactly.
 
-    Results are those of `advance`, contact by contact, in a tenth of the time or less.
+    Each contact has the results of `advance`, in a tenth of the time or less.
 
     Source: mdr-5, Eqs. (5.4)-(5.9); notes, §10.
 

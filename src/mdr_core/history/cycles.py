@@ -77,7 +77,7 @@ def cycles(
     ----------
     profile, e_star, g_star, friction_coefficient : as for `solve`.
     indentation_depth, normal_force : exactly one, the mean [length], [force].
-    normal_amplitude : of the same quantity, >= 0, at most the mean.
+    normal_amplitude : amplitude of the normal load [length], [force], >= 0, at most the mean.
     tangential_displacement, tangential_force : exactly one, the amplitude [length], [force].
     count : number of cycles.
     samples_per_step : evenly spaced samples on each of the 2 + 2 `count` load steps; by default

@@ -60,7 +60,7 @@ class SavedState(NamedTuple):
             raise InputError(("initial_state", "regime"), detail)
         if given["contact"] != contact:
             detail = "belongs to another profile, material, friction coefficient or control"
-            raise InputError(("initial_state", "contact"), f"{detail}: repeat those of the state")
+            raise InputError(("initial_state", "contact"), f"{detail}: repeat all four")
         return cls(**given)
 
     def restored(self, normal: float, tangential: float) -> Polyline:

@@ -26,7 +26,7 @@ class PolylineStack:
         V_0 ... V_k, C, P'   otherwise; k is the last vertex with f_k <= f' and b_k <= b'.
 
     The corner C is the place between V_k and V_k+1 at which the second of the two sums falls to
-    that of P'. Its other sum is that of the segment there; between C and P' the other sum grows
+    its value at P'. The other sum of C is its value on the segment; between C and P' it grows
     alone. If the axis exceeds P' as well, all springs slip, and C lies on the axis.
 
     Parameters
@@ -220,7 +220,7 @@ def sweep(parent: Indices, vertices: Array, tops: Indices, fallen: Array, swept:
     """List the parts of segments that the slip front sweeps on each step; return their number.
 
     On a step from P to P' a place of the polyline slips as soon as it exceeds the load point in one
-    of the sums f and b. The front moves down from P to where neither sum exceeds that of P'.
+    of the sums f and b. The front moves down from P to where neither sum exceeds its value at P'.
 
     Parameters
     ----------

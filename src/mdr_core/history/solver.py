@@ -164,7 +164,7 @@ class LoadHistory(validity.ContactResults):
         )._asdict()
 
     def _over_depths(self, span: Array, line: Polyline) -> Polyline:
-        """Return a polyline over reduced forces as one over depths, with the same slopes."""
+        """Return the polyline over depths that has the slopes of a polyline over reduced forces."""
         if not line.in_contact:
             return slip_memory.separated(min(float(self.indentation_depth[-1]), 0.0), 0.0)
         return slip_memory.stacked(span, slip_memory.as_tree(line).slope[1:])
@@ -262,8 +262,8 @@ def solve(
         sign, shape (n,). One of the two may be a single value for all points.
     samples_per_step : samples from each point to the next, evenly spaced in the normal load, >= 1.
     rtol : relative accuracy, 1e-13 to 1e-3.
-    initial_state : `final_state` of a history of the same contact and controls, which this one
-        carries on: a path in pieces has the results of the path as a whole.
+    initial_state : `final_state` of a history of this contact and these controls, to be carried on:
+        a path in pieces has the results of the path as a whole.
 
     Returns
     -------

@@ -185,8 +185,8 @@ class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles
     history: History = left_out("Arbitrary load path, given by its points.")
     cycles: Cycles = left_out("In place of `history`: identical cycles of the tangential load.")
     initial_state: HistoryState = left_out(
-        "`final_state` of the history that this one carries on, of the same contact and controls; "
-        "with `history` only."
+        "`final_state` of a history of this contact and these controls, which is carried on; with "
+        "`history` only."
     )
     return_state: bool = Field(default=False, description="Return `final_state`.")
 
