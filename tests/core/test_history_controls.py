@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mdr_core import history, normal
+from mdr_core.controls import default_samples
 from mdr_core.errors import InputError
-from mdr_core.history import default_samples
 from mdr_core.profiles import FlatPunch, Paraboloid, Tabulated
 from tests.core.comparison import EPS, profile_from
 from tests.core.test_history_paths import MATERIAL, PROFILES, every_profile

@@ -2,7 +2,7 @@
 
 from mdr_core.history.contact_state import ContactState, advance, unloaded
 from mdr_core.history.contact_states import ContactStates, advance_many
-from mdr_core.history.cycles import LoadCycles, cycles, default_samples
+from mdr_core.history.cycles import LoadCycles, cycles
 from mdr_core.history.solver import LoadHistory, solve
 
 __all__ = [
@@ -13,7 +13,6 @@ __all__ = [
     "advance",
     "advance_many",
     "cycles",
-    "default_samples",
     "solve",
     "unloaded",
 ]

@@ -2,21 +2,17 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Final
+from typing import ClassVar
 
 import numpy as np
 
+from mdr_core.controls import default_samples
 from mdr_core.errors import AccuracyError, InputError
-from mdr_core.history.load_path import are_of_different_pairs
 from mdr_core.history.solver import LoadHistory, solve
 from mdr_core.materials import Material
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 from mdr_core.validation import UNRESOLVED
-
-# Samples with which the energy of nine curved cycles in ten is within 0.1 %; the error falls with
-# the square of their number. Source: http.md, Cost of a coarse path.
-_ON_CURVES: Final = 20
 
 
 @dataclass(frozen=True, repr=False)
@@ -81,7 +77,7 @@ def cycles(
     tangential_displacement, tangential_force : exactly one, the amplitude [length], [force].
     count : number of cycles.
     samples_per_step : evenly spaced samples on each of the 2 + 2 `count` load steps; by default
-        see `default_samples`.
+        20 where controls of different pairs both oscillate, else 1.
     rtol : relative accuracy, as for `solve`.
 
     Returns
@@ -140,18 +136,3 @@ def cycles(
         )
         raise AccuracyError(detail, ("cycles", "tangential"))
     return LoadCycles(history.path, e_star, history.results, rtol, count)
-
-
-def default_samples(normal: str, tangential: str, normal_amplitude: float) -> int:
-    """Return the samples on each load step of cycles if their number is not given.
-
-    One sample is exact on straight steps. On curved steps, where controls of different pairs both
-    change, 20 samples follow the curve.
-
-    Parameters
-    ----------
-    normal, tangential : names of the controls, such as ``"normal_force"``.
-    normal_amplitude : amplitude of the normal control.
-    """
-    curved = normal_amplitude > 0 and are_of_different_pairs(normal, tangential)
-    return _ON_CURVES if curved else 1

@@ -15,6 +15,7 @@ from typing import Any, Final, NamedTuple, Self
 
 import numpy as np
 
+from mdr_core.controls import are_of_different_pairs
 from mdr_core.doubles import ROUNDING
 from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
@@ -280,11 +281,6 @@ def build(
         for before, each in zip((begin.normal, begin.tangential), points, strict=True)
     )
     return SampledPath(start, normal[0], tangential[0], first, second, samples_per_step, begin)
-
-
-def are_of_different_pairs(normal: str, tangential: str) -> bool:
-    """Return True for a depth with a tangential force, or a normal force with a displacement."""
-    return (normal == "normal_force") != (tangential == "tangential_force")
 
 
 def _along(points: Array, count: int) -> Array:

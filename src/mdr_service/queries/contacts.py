@@ -200,9 +200,10 @@ def response_metadata(
     count = query.path.samples if isinstance(query, HistoryQuery) else query.loads
     # Fields at the end of a history are those of its last sample.
     known = own[-1:] if count == 1 else np.full(count, own)
-    # The source does not know the error of fields.
-    found = [notice for notice in warnings if notice.code != "accuracy"]
-    if error > query.rtol:
+    # The source warns of its own error, not of the error of fields.
+    given = [*warnings]
+    found = [notice for notice in given if notice.code != "accuracy"]
+    if error > query.rtol and (found != given or source.error_estimate <= query.rtol):
         found.append(normal_contact.not_reached(query.rtol, error))
     listed = [vars(notice) for notice in found]
     about = {"method": method, "error_estimate": error, "model_error": known}

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from mdr_core.history import default_samples
+from mdr_core.controls import default_samples
 from mdr_service.schemas.contacts import Choice, Query, friction
 from mdr_service.schemas.quantities import (
     LARGEST,
