@@ -82,21 +82,21 @@ def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
 
 
 def of_sliding(
-    displacement: Array, force: Array, limit: Array, dissipated: Callable[[], Array]
+    displacement: Array, force: Array, limit: Array, dissipated: Callable[[], float]
 ) -> float:
     """Return the condition number of the dissipated energy with respect to sliding distance [1].
 
     Parameters
     ----------
     displacement, force, limit : displacement [length], F_x and mu F_N [force] of every load step.
-    dissipated : dissipated energy of every load step, evaluated only if the contact slides.
+    dissipated : energy dissipated up to the last load step, evaluated only if the contact slides.
     """
     slides = (limit > 0) & (np.abs(force) >= limit * (1 - ROUNDING))
     if not slides.any():
         return 0.0
-    most = float(np.max(dissipated()))
-    condition = np.max(np.where(slides, limit * np.abs(displacement), 0.0))
-    return float(condition) / most if most > 0 else 0.0
+    total = dissipated()
+    moved = np.sum(np.where(slides, limit * np.abs(displacement), 0.0))
+    return float(moved) / total if total > 0 else 0.0
 
 
 def narrow_annulus(coordinate: Array, width: Array) -> Array:

@@ -93,6 +93,12 @@ class IntervalMoments:
             closed = self.profile.interval_moments(span, ends, over_forces=self.over_forces)
         if closed is not None:
             return Moments(span, np.where(span > 0, closed, 0.0))
+        if not self.profile.swept:
+            # Identical cycles repeat their intervals.
+            key, first, index = np.unique(low + 1j * span, return_index=True, return_inverse=True)
+            if 2 * key.size < low.size:
+                different = self.over(low[first], span[first], ends[:, first])
+                return Moments(span, different.weights[:, index])
         if len(several := in_blocks(low.size, NODES)) > 1:
             parts = [self._part(at).over(low[at], span[at], ends[:, at]) for at in several]
             return Moments(span, np.concatenate([part.weights for part in parts], axis=1))
@@ -257,5 +263,5 @@ def interval_moments(profile: Profile, *, over_forces: bool) -> IntervalMoments:
     return (_of_table if has_many_breaks(profile) else IntervalMoments)(profile, over_forces)
 
 
-# The sums between breaks take as long as a short history; those of 2000 points have 1 MB.
+# The sums between breaks take as long as a short history. For 2000 points they have 1 MB.
 _of_table: Final = lru_cache(maxsize=16)(IntervalMoments)

@@ -21,9 +21,11 @@ from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes, only_one, require_positive, require_type
 
-# Relative rounding error of the load at full slip, where the normal load is prescribed: that of up
-# to three products.
+# Relative rounding error of the displacement mu (E*/G*) d at full slip, of three products.
 _LIMIT_ERROR: Final = 1.5 * EPS
+
+# Relative error of a stick radius from which on it is computed, not linearised.
+_LINEAR: Final = 0.1
 
 # Step of depth or force between two contact coordinates.
 _Step = Callable[[Profile, Array, Array, Array], Array]
@@ -210,16 +212,32 @@ class TangentialContact(validity.ContactResults):
     @property
     def stick_error(self) -> Array:
         """Rounding error of a stick radius that follows from a load [length]."""
+        c = self.stick_radius
         if self.control == "stick_radius":
-            return 0 * self.stick_radius
-        error = self.stick_radius * (ROUNDING + self._limit_rounding)
+            return 0 * c
+        error = c * (ROUNDING + self._limit_rounding)
+        if some(late := self._limit_rounding > _LINEAR):
+            size, limit = self._load_and_limit
+            profile, of_force = self.normal.profile, self.control == "tangential_force"
+            moved = ROUNDING * c
+            for side in (-1, 1):
+                rest = np.maximum((limit - size) / limit + side * self.limit_error, 0.0)
+                ends = self._coordinate, 1 - rest, rest
+                edge, _ = equivalent_1d.stick_edge(profile, *ends, of_force=of_force)
+                moved = np.maximum(moved, np.abs(profile.contact_radius(edge) - c))
+            error = where(late, moved, error)
         return error + self.slip_width * self._width_rounding
 
     @property
     def limit_error(self) -> Parameter:
         """Relative error of the load at full slip, and of the distance from it over that load."""
-        normal = self.normal
-        return _LIMIT_ERROR if normal.control == CONTROLS[self.control] else normal.error_estimates
+        if self.normal.control != CONTROLS[self.control]:
+            return self.normal.error_estimates
+        if self.control == "tangential_displacement":
+            return _LIMIT_ERROR
+        # One product: half a unit in its last place.
+        limit = self.limiting_force
+        return np.spacing(limit) / where(limit > 0, 2 * limit, 1.0)
 
     @cached_property
     def error_estimates(self) -> Array:
@@ -232,11 +250,16 @@ class TangentialContact(validity.ContactResults):
         return extremes(self.error_estimates)[1]
 
     @property
+    def _load_and_limit(self) -> tuple[Array, Array]:
+        """Magnitude of the prescribed load, and that of full slip."""
+        if self.control == "tangential_force":
+            return np.abs(self.tangential_force), self.limiting_force
+        return np.abs(self.tangential_displacement), self._full_slip_displacement
+
+    @property
     def _load_condition(self) -> Parameter:
         """Largest relative condition number of each load's results with respect to it [1]."""
-        force_prescribed = self.control == "tangential_force"
-        size = np.abs(self.tangential_force if force_prescribed else self.tangential_displacement)
-        limit = self.limiting_force if force_prescribed else self._full_slip_displacement
+        force_prescribed, (size, limit) = self.control == "tangential_force", self._load_and_limit
         profile, partial = self.normal.profile, (limit > 0) & ~self.full_slip
         ratio = where(partial, size / where(limit > 0, limit, 1.0), 0.0)
         ends = self._coordinate, self.stick_coordinate

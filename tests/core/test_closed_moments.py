@@ -1,4 +1,4 @@
-"""Histories would lose digits beside the equator of a steep tip, or where g stops rising."""
+"""Moments keep their digits beside the equator of a steep tip, and where g stops rising."""
 
 import mpmath
 import numpy as np

@@ -1,4 +1,4 @@
-"""Cycles or random paths would miss the stored references, or two solvers would differ."""
+"""Cycles and random paths meet the stored references, under either kind of control."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Histories with a closed form would miss it under one of the exact controls."""
+"""Histories have their closed forms under forces and under displacements."""
 
 from __future__ import annotations
 
@@ -431,8 +431,8 @@ def test_growth_in_the_ratio_of_friction_leaves_the_regime_as_it_is() -> None:
 
 
 @pytest.mark.parametrize("control", ["normal_force", "indentation_depth"])
-def test_nonlinear_step_may_end_in_separation(control: str) -> None:
-    """Where both controls change, the arcs of the traction have gone with the contact."""
+def test_path_under_controls_of_different_pairs_may_end_in_separation(control: str) -> None:
+    """The traction ends with the contact."""
     tangential = "tangential_displacement" if control == "normal_force" else "tangential_force"
     path: dict[str, Any] = {control: [1.0, 1.0, 0.5, 0.0], tangential: [0.0, 0.02, 0.0, 0.0]}
     found = history.solve(Paraboloid(1.0), 1.0, 0.8, 0.3, **path)

@@ -1,4 +1,4 @@
-"""Histories would break a law of friction, energy, symmetry or units."""
+"""Histories obey the laws of friction, energy, symmetry and units."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A single load would differ as a history, as a tangential query and as a cycle."""
+"""A single load has the same results as a history, as a tangential query and as a cycle."""
 
 from __future__ import annotations
 

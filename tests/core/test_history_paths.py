@@ -1,4 +1,4 @@
-"""Springs would slip where they stick, or a path of forces would be another one."""
+"""Each spring carries what the slip memory determines, under displacements and under forces."""
 
 from __future__ import annotations
 

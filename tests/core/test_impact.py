@@ -1,4 +1,4 @@
-"""Rebound velocities, durations or losses of oblique impacts would be wrong."""
+"""Oblique impacts obey their closed forms, conserve energy, and are as exact as `rtol` requires."""
 
 import math
 from typing import Any
@@ -148,6 +148,62 @@ def test_time_stepping_converges_to_the_result(kind: str) -> None:
         expected, abs=3 * w * hit.error_estimate
     )
     assert hit.tangential_rebound_velocity == pytest.approx(expected, abs=1e-3 * w)
+
+
+def error(hit: impact.Impact, exact: impact.Impact) -> float:
+    """Largest error of the velocities and the energy, over the larger one before or after."""
+    largest = max(abs(exact.tangential_velocity), abs(exact.tangential_rebound_velocity))
+    velocity = abs(hit.tangential_rebound_velocity - exact.tangential_rebound_velocity) / largest
+    energy = abs(hit.dissipated_energy - exact.dissipated_energy)
+    return float(max(velocity, 2 * energy / (TANGENTIAL_MASS * largest**2)))
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_estimate_holds_for_random_impacts(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    # Kinds whose fine solutions take less than a second.
+    kind = ("paraboloid", "cone", "truncated_paraboloid", "capped_paraboloid")[seed % 4]
+    v = speed(KINDS[kind]) * rng.uniform(0.3, 1.0)
+    w = MU * v * rng.uniform(0.05, 6.0)
+    exact = solved(KINDS[kind], v, w, rtol=1e-6)
+    assert exact.error_estimate <= 1e-6
+    for rtol in (1e-3, 1e-4, 1e-5):
+        hit = solved(KINDS[kind], v, w, rtol=rtol)
+        assert hit.error_estimate <= rtol
+        assert error(hit, exact) <= hit.error_estimate + exact.error_estimate
+        assert not [notice for notice in hit.warnings if notice.code == "accuracy"]
+
+
+@pytest.mark.parametrize("kind", ["paraboloid", "cone"])
+def test_looser_tolerance_takes_less_work_and_a_tighter_one_errs_less(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Work is the number of samples; errors of several impacts are against a finer solution."""
+    v = speed(KINDS[kind])
+    velocities = MU * v * np.array([0.4, 1.0, 1.7, 2.6])
+    exact = [solved(KINDS[kind], v, w, rtol=1e-8) for w in velocities]
+    counts: list[int] = []
+    motion = impact._motion
+
+    def counted(scene: Any, count: int) -> Any:
+        counts.append(count)
+        return motion(scene, count)
+
+    monkeypatch.setattr(impact, "_motion", counted)
+    work, worst = {}, {}
+    for rtol in (1e-3, 1e-6):
+        hits = [solved(KINDS[kind], v, w, rtol=rtol) for w in velocities]
+        work[rtol] = sum(counts)
+        counts.clear()
+        worst[rtol] = max(error(*pair) for pair in zip(hits, exact, strict=True))
+    assert work[1e-3] <= 0.7 * work[1e-6]
+    assert worst[1e-6] <= worst[1e-3] / 20
+
+
+def test_tolerance_that_is_not_reached_is_a_warning() -> None:
+    hit = solved(mdr.Paraboloid(1e5), 1.0, 0.3, rtol=1e-13)
+    assert [notice.code for notice in hit.warnings] == ["accuracy"]
+    assert 1e-13 < hit.error_estimate < 1e-7
 
 
 @pytest.mark.parametrize("unit", [1e-40, 1e-9, 1e12])

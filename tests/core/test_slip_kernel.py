@@ -35,7 +35,6 @@ def test_compiled_kernel_is_bit_identical_to_python(
         rng.normal(*spread, count),
         np.cumsum(rng.normal(0.0, 0.2, count)),
         np.arange(count) % 3 > 0,
-        np.arange(count),
     )
     start = slip_memory.separated(0.0, 0.0)
     compiled = slip_memory.follow(start, points)
@@ -65,7 +64,7 @@ def test_parts_without_room_are_counted() -> None:
     """No path writes beyond the array, however many segments rounding errors add to the front."""
     rng = np.random.default_rng(21)
     normal, tangential = rng.normal(0.3, 0.1, 200), np.cumsum(rng.normal(0.0, 0.2, 200))
-    points = LoadPoints(normal, tangential, np.zeros(200, dtype=bool), np.arange(200))
+    points = LoadPoints(normal, tangential, np.zeros(200, dtype=bool))
     tree, _ = slip_memory.follow(slip_memory.separated(0.0, 0.0), points)
     fallen = -np.diff(tree.path, prepend=0.0)
     tops = np.append(-1, tree.top[:-1])

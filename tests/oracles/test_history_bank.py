@@ -1,4 +1,4 @@
-"""The banks of histories would be incomplete, or differ from their generator."""
+"""The banks of histories are complete and equal what their generator computes."""
 
 from __future__ import annotations
 

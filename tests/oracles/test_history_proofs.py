@@ -1,4 +1,4 @@
-"""The exact histories of the banks would not be those of springs, or miss the closed forms."""
+"""The exact histories of the banks are those of single springs, and have their closed forms."""
 
 from __future__ import annotations
 

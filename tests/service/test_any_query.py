@@ -163,19 +163,12 @@ def one_or_many(values: st.SearchStrategy[float]) -> st.SearchStrategy[object]:
 SMALL = st.just(0.0) | st.floats(-1e-9, 1e-9) | SIGNED
 NORMAL_POINTS = {"normal_force": LOADS, "indentation_depth": SIGNED}
 TANGENTIAL_POINTS = {"tangential_force": SMALL, "tangential_displacement": SIGNED}
-STRAIGHT = [
-    ("normal_force", "tangential_force"),
-    ("indentation_depth", "tangential_displacement"),
-]
-NONLINEAR = [
-    ("normal_force", "tangential_displacement"),
-    ("indentation_depth", "tangential_force"),
-]
+CONTROLS = st.tuples(st.sampled_from([*NORMAL_POINTS]), st.sampled_from([*TANGENTIAL_POINTS]))
 
 
 @st.composite
-def histories(draw: st.DrawFn, controls: list[tuple[str, str]]) -> dict[str, object]:
-    pressed, pushed = draw(st.sampled_from(controls))
+def histories(draw: st.DrawFn) -> dict[str, object]:
+    pressed, pushed = draw(CONTROLS)
     return {
         "normal": {pressed: draw(one_or_many(NORMAL_POINTS[pressed]))},
         "tangential": {pushed: draw(one_or_many(TANGENTIAL_POINTS[pushed]))},
@@ -184,8 +177,8 @@ def histories(draw: st.DrawFn, controls: list[tuple[str, str]]) -> dict[str, obj
 
 
 @st.composite
-def cycles(draw: st.DrawFn, controls: list[tuple[str, str]]) -> dict[str, object]:
-    pressed, pushed = draw(st.sampled_from(controls))
+def cycles(draw: st.DrawFn) -> dict[str, object]:
+    pressed, pushed = draw(CONTROLS)
     mean, share = draw(LOADS), draw(st.just(0.0) | st.floats(0.01, 1.0))
     return {
         "normal": {pressed: mean, "amplitude": mean * share},
@@ -199,20 +192,15 @@ HISTORIES = {
     "profile": PROFILES,
     **{name: FRICTION[name] for name in ("material", "friction_coefficient")},
 }
-# Each step of a nonlinear path is subdivided, so use profiles without iteration.
-SHORT_HISTORIES = HISTORIES | {"profile": simple()}
-LINEAR_HISTORIES = st.fixed_dictionaries(HISTORIES | {"history": histories(STRAIGHT)}) | (
-    st.fixed_dictionaries(HISTORIES | {"cycles": cycles(STRAIGHT)})
-)
-NONLINEAR_HISTORIES = st.fixed_dictionaries(SHORT_HISTORIES | {"history": histories(NONLINEAR)}) | (
-    st.fixed_dictionaries(SHORT_HISTORIES | {"cycles": cycles(NONLINEAR)})
+ANY_HISTORIES = st.fixed_dictionaries(HISTORIES | {"history": histories()}) | (
+    st.fixed_dictionaries(HISTORIES | {"cycles": cycles()})
 )
 ENDS = st.builds(
     lambda query, places: query | places,
     st.fixed_dictionaries(
         HISTORIES
         | {
-            "history": histories(STRAIGHT),
+            "history": histories(),
             "quantities": quantities(NORMAL_FIELDS + SHEAR_FIELDS),
         }
     ),
@@ -335,14 +323,8 @@ def test_any_query(client: Client, path: str, queries: Any, answer: Any, example
 
 
 @with_examples
-@given(query=LINEAR_HISTORIES)
+@given(query=ANY_HISTORIES)
 def test_history_query(client: Client, query: dict[str, object]) -> None:
-    check(client, "/v1/tangential/history", query, HistoryAnswer)
-
-
-@partial(with_examples, examples=50)
-@given(query=NONLINEAR_HISTORIES)
-def test_nonlinear_history_query(client: Client, query: dict[str, object]) -> None:
     check(client, "/v1/tangential/history", query, HistoryAnswer)
 
 

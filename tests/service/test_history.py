@@ -1,9 +1,8 @@
-"""Histories over HTTP: the core's digits at every sample, and its fields at the end."""
+"""Histories over HTTP have the core's digits at every sample, and its fields at the end."""
 
 import pytest
 
 from mdr_core import fields, history, normal
-from mdr_core.normal import ACCURACY
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client
 from tests.service.test_normal import E_STAR, PROFILES
@@ -32,6 +31,10 @@ PATHS = {
     "a force and displacements": (
         {"normal_force": 1e5},
         {"tangential_displacement": [0.0, 1e-6, -1e-6]},
+    ),
+    "a force on a curve": (
+        {"normal_force": [1e5, 1.4e5]},
+        {"tangential_displacement": [1e-5, -1e-5]},
     ),
     "a depth and forces": ({"indentation_depth": [1e-3]}, {"tangential_force": [0.0, 10.0, -5.0]}),
 }
@@ -69,16 +72,6 @@ def test_response_equals_the_core(client: Client, kind: str, load_path: str) -> 
     assert not {"energy_per_cycle", "secant_stiffness"} & set(document)
 
 
-def test_nonlinear_steps_state_their_error(client: Client) -> None:
-    path = {"normal_force": [1e5, 1.4e5]}, {"tangential_displacement": [1e-5, -1e-5]}
-    document = client.post(PATH, query(**history_of(*path))).json()
-    expected = solved("paraboloid", *path)
-    assert document["tangential_force"] == expected.tangential_force.tolist()
-    assert document["error_estimate"] == expected.error_estimate
-    warned = "accuracy" in {each["code"] for each in document["warnings"]}
-    assert warned == (document["error_estimate"] > ACCURACY)
-
-
 def test_scalars_equal_lists_of_length_one(client: Client) -> None:
     answers = [
         client.post(
@@ -99,13 +92,18 @@ CYCLES = {
         {"tangential_displacement": 3e-5},
     ),
     "a force and a displacement": ({"normal_force": 1e5}, {"tangential_displacement": 1e-6}),
+    "a force and a displacement in phase": (
+        {"normal_force": 1e5, "amplitude": 2e4},
+        {"tangential_displacement": 1e-6},
+    ),
 }
 
 
+@pytest.mark.parametrize("samples", [{}, {"samples_per_step": 2}])
 @pytest.mark.parametrize("load_path", CYCLES)
-def test_cycles_equal_the_core(client: Client, load_path: str) -> None:
+def test_cycles_equal_the_core(client: Client, load_path: str, samples: dict[str, int]) -> None:
     pressed, pushed = CYCLES[load_path]
-    told_by = {"normal": pressed, "tangential": pushed, "count": 3, "samples_per_step": 2}
+    told_by = {"normal": pressed, "tangential": pushed, "count": 3, **samples}
     document = client.post(PATH, query(cycles=told_by)).json()
     controls = {name: value for name, value in pressed.items() if name != "amplitude"}
     expected = history.cycles(
@@ -117,7 +115,7 @@ def test_cycles_equal_the_core(client: Client, load_path: str) -> None:
         **pushed,
         normal_amplitude=pressed.get("amplitude", 0.0),
         count=3,
-        samples_per_step=2,
+        **samples,
     )
     for name in (*SAMPLED, "slip_fronts"):
         assert document[name] == getattr(expected, name).tolist(), name
@@ -159,6 +157,14 @@ def test_cycles_are_limited(client: Client) -> None:
         ({"count": SETTINGS.max_length // 2}, "/cycles"),
         ({"count": SETTINGS.max_length, "samples_per_step": 2}, "/cycles/samples_per_step"),
         ({"count": SETTINGS.max_length + 1}, "/cycles/count"),
+        # Curved steps have 20 samples each by default.
+        (
+            {
+                "normal": {"indentation_depth": 1e-6, "amplitude": 1e-7},
+                "count": SETTINGS.max_length // 40,
+            },
+            "/cycles",
+        ),
     ):
         response = client.post(PATH, query(cycles=told_by | more))
         assert response.status_code == 422
@@ -201,3 +207,13 @@ def test_error_of_a_list_of_one_points_at_its_only_value(client: Client) -> None
     assert response.status_code == 422
     pointers = [error["pointer"] for error in response.json()["errors"]]
     assert pointers == ["/history/tangential/tangential_force/0"]
+
+
+@pytest.mark.parametrize("samples", [1, 2, 3])
+def test_force_that_acts_at_first_contact_is_rejected(client: Client, samples: int) -> None:
+    path = {"indentation_depth": [-3e-5, 1e-4]}, {"tangential_force": [0.0, -10.0]}
+    response = client.post(PATH, query("flat_punch", **history_of(*path, samples_per_step=samples)))
+    assert response.status_code == 422
+    (error,) = response.json()["errors"]
+    assert error["pointer"] == "/history/tangential/tangential_force/1"
+    assert "add a point in contact without the force" in error["detail"]

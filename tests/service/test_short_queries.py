@@ -55,9 +55,8 @@ def query(name: str, value: dict[str, Any]) -> Query:
         ("stress", STRESS | {"profile": TERMS, "radius": [1e-5] * 20}, False),
         ("history", PATH | {"history": POINTS}, True),
         ("history", PATH | {"history": POINTS | {"samples_per_step": 200}}, False),
-        # A nonlinear step takes some milliseconds.
-        ("history", PATH | {"history": MIXED}, False),
-        ("stress", PATH | {"history": MIXED, "radius": [0.0], "quantities": ["slip"]}, False),
+        ("history", PATH | {"history": MIXED}, True),
+        ("stress", PATH | {"history": MIXED, "radius": [0.0], "quantities": ["slip"]}, True),
         ("subsurface", SUBSURFACE, False),
         ("wear", WEAR, True),
         ("evolution", EVOLUTION, False),

@@ -162,3 +162,27 @@ def test_pressure_is_infinite_at_the_breaks_of_a_table(client: Client) -> None:
     assert [p is None for p in document["pressure"][0]] == [False, True, True, False]
     messages = [each["message"] for each in document["warnings"]]
     assert "pressure is infinite at radius 0.25, 0.5" in messages
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-3, 7e5])
+def test_force_one_unit_in_the_last_place_below_full_slip(client: Client, unit: float) -> None:
+    """The stress beyond the tiny stick zone is that of full slip, µp of Hertz' contact."""
+    force, modulus, curvature = 10.0 * unit, 115e3 * unit, 10.0
+    a = float(np.cbrt(3 * force * curvature / (4 * modulus)))
+    request: dict[str, object] = {
+        "profile": {"kind": "paraboloid", "radius": curvature},
+        "material": {"e_star": modulus, "g_star": 95e3 * unit, "poissons_ratio": 0.3},
+        "load": {"normal_force": force},
+        "friction_coefficient": 0.3,
+        "tangential": {"tangential_force": float(np.nextafter(0.3 * force, 0.0))},
+    }
+    fields_there = {"radius": [0.5 * a], "quantities": ["shear_stress"]}
+    surface = client.post("/v1/stress", request | fields_there).json()
+    hertz = 0.3 * 1.5 * force / (np.pi * a * a) * np.sqrt(0.75)
+    assert surface["shear_stress"][0] == pytest.approx([hertz], rel=surface["error_estimate"])
+    assert surface["error_estimate"] <= 1e-9
+    places = {"x": [0.0, 0.5 * a], "z": [0.0, 0.3 * a]}
+    beneath = client.post("/v1/subsurface", request | places).json()
+    assert beneath["error_estimate"] <= 1e-5
+    codes = [warning["code"] for warning in surface["warnings"]]
+    assert "accuracy" not in codes

@@ -1,4 +1,4 @@
-"""Fields next to edges that follow from a load would err by more than its rounding."""
+"""Fields next to edges that follow from a load err by the rounding of the load at most."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mpmath import isfinite, mpf
+from mpmath import cbrt, isfinite, mpf, pi, sqrt, workdps
 
-from mdr_core import fields, normal, tangential
+from mdr_core import fields, history, normal, subsurface, tangential
+from mdr_core.profiles import Paraboloid
 from tests.core.comparison import profile_from, stored
 from tests.oracles import slip_reference
 from tests.oracles.slip_reference import Material, setting
@@ -123,3 +124,59 @@ def test_edges_of_a_sweep_match_single_loads(shape: str) -> None:
                 max(errors), rel=1e-9, abs=0
             )
     assert together.error_estimate == max(each.error_estimate for each in alone)
+
+
+def just_below_full_slip(seed: int) -> tuple[Any, float, float, mpf, mpf]:
+    """A paraboloid in any units, a force just below µF_N, and the exact radii a and c."""
+    rng = np.random.default_rng(seed)
+    curvature, modulus, force = 10 ** rng.uniform((-3, -3, -6), (3, 12, 6))
+    mu = rng.uniform(0.05, 1.0)
+    contact = normal.solve(Paraboloid(curvature), modulus, normal_force=force)
+    pushed = mu * force * (1 - 10 ** rng.uniform(-13, -6))
+    pushed = float(np.nextafter(mu * force, 0.0)) if seed % 2 else pushed
+    with workdps(40):
+        a = cbrt(3 * mpf(force) * mpf(curvature) / (4 * mpf(modulus)))
+        c = a * cbrt(max(1 - mpf(pushed) / (mpf(mu) * mpf(force)), 0))
+    return contact, mu, pushed, a, c
+
+
+def hertzian(contact: Any, mu: float, a: mpf, c: mpf, radii: np.ndarray) -> list[mpf]:
+    """Shear stress of Cattaneo and Mindlin, Eq. (5.38)."""
+    with workdps(40):
+        scale = 2 * mpf(mu) * mpf(contact.e_star) / (pi * mpf(contact.profile.radius))
+        return [
+            scale * (sqrt(a * a - r * r) - (sqrt(c * c - r * r) if r < c else 0))
+            for r in map(mpf, radii.tolist())
+        ]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_estimate_next_to_full_slip_is_that_of_the_stick_zone(seed: int) -> None:
+    """An ill-conditioned stick radius changes stresses by c/a inside it, and not at all outside."""
+    contact, mu, pushed, a, c = just_below_full_slip(seed)
+    single = tangential.solve(contact, 0.8 * contact.e_star, mu, tangential_force=pushed)
+    force = float(contact.normal_force)
+    path = history.solve(
+        contact.profile,
+        contact.e_star,
+        0.8 * contact.e_star,
+        mu,
+        normal_force=force,
+        tangential_force=[0.0, pushed],
+    )
+    inside = np.array([0.0, 0.5, 0.9]) * float(single.stick_radius)
+    outside = np.array([0.3, 0.6]) * float(contact.contact_radius)
+    for radii in (inside, outside):
+        exact = hertzian(contact, mu, a, c, np.append(radii, outside))
+        # A history within rounding error of full slip is in full slip.
+        sources = [(single, single), (path, path.state)][: 1 if seed % 2 else 2]
+        for whole, source in sources:
+            at = np.append(radii, outside)
+            found = fields.shear_stress(source, at).tolist()
+            error = max(abs(mpf(x) - y) for x, y in zip(found, exact, strict=True)) / max(exact)
+            bound = fields.own_error(whole) + fields.edge_error(source, "shear_stress", at)
+            assert error <= bound
+            assert bound <= (1e-5 if radii is inside else 1e-9)
+    # A response states four times this bound.
+    places = np.append(0.0, outside), 0.0, [[0.0], [0.3 * float(contact.contact_radius)]]
+    assert subsurface.error_estimate(single, *places) <= 1e-5 / 4

@@ -1,4 +1,4 @@
-"""Incipient slip, c -> a: an annulus below the rounding error of a would be lost."""
+"""Incipient slip, c -> a: an annulus below the rounding error of a keeps its width."""
 
 from __future__ import annotations
 

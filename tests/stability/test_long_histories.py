@@ -1,4 +1,4 @@
-"""Errors of histories of up to 100,000 steps would accumulate."""
+"""Errors of histories of up to 100,000 steps do not accumulate."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Near full slip, c -> 0: an ill-conditioned stick radius would pass as exact."""
+"""Near full slip, c -> 0: the estimate covers an ill-conditioned stick radius."""
 
 from __future__ import annotations
 

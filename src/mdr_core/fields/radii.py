@@ -12,16 +12,16 @@ from numpy.typing import ArrayLike
 
 from mdr_core.adhesion import AdhesiveContact
 from mdr_core.doubles import ADJACENT, ROUNDING
-from mdr_core.elementwise import broadcast, some
+from mdr_core.elementwise import broadcast, some, where
 from mdr_core.errors import InputError
-from mdr_core.history import ContactState
+from mdr_core.history import ContactState, LoadHistory
 from mdr_core.normal import NormalContact, solve
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
-from mdr_core.validation import require_type
+from mdr_core.validation import extremes, require_type
 
-# Largest error of a field by that of an edge, relative to its largest value, on a grid with room
-# enough: a tenth of the errors estimated elsewhere.
+# Largest error of a field by the error of an edge, relative to its largest value, on a grid with
+# room enough: a tenth of the errors estimated elsewhere.
 _GRID_ERROR: Final = 1e-12
 
 
@@ -33,7 +33,9 @@ class Edges(NamedTuple):
     error: Array
     """Their error [length]."""
     scale: Array
-    """Distance over which a field changes there [length]."""
+    """Distance over which a stress changes there [length]."""
+    reach: Array
+    """Distance over which a displacement changes there [length]."""
 
 
 def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
@@ -44,11 +46,12 @@ def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
         scale = np.minimum(gaps, np.append(gaps[1:], gaps[-1])) / contact.profile.steepness
         depth = max(contact.indentation_depth, 0.0)
         end = solve(contact.profile, contact.e_star, indentation_depth=depth)
-        return Edges(radius, end.edge_errors * radius, scale)
+        error = end.edge_errors * radius + np.append(contact.front_errors, 0.0)
+        return Edges(radius, error, *_near_axis(end, radius, scale))
     needed = "a contact, or the state of a load history"
     if isinstance(contact, AdhesiveContact):
         a = np.ravel(contact.contact_radius)
-        return Edges(a, a * np.ravel(contact.edge_errors), 0 * a)
+        return Edges(a, a * np.ravel(contact.edge_errors), 0 * a, 0 * a)
     require_type("contact", contact, (NormalContact, TangentialContact), needed)
     normal = contact.normal
     profile, a = normal.profile, normal.contact_radius
@@ -56,16 +59,34 @@ def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
     beyond = a - profile.first_radius
     error, scale = beyond * normal.edge_errors, beyond / profile.steepness
     if not isinstance(contact, TangentialContact):
-        return Edges(*map(np.ravel, (a, error, scale)))
+        return Edges(*map(np.ravel, (a, error, scale, scale)))
     c, scale = contact.stick_radius, np.minimum(scale, contact.slip_width)
-    parts = (a, c), (error, contact.stick_error), (scale, scale)
+    at_c, reach = _near_axis(normal, c, scale)
+    parts = (a, c), (error, contact.stick_error), (scale, at_c), (scale, reach)
     return Edges(*(np.ravel([broadcast(part, c.shape) for part in pair]) for pair in parts))
+
+
+def _near_axis(contact: NormalContact, c: Array, scale: Array) -> tuple[Array, Array]:
+    """Return the distances over which stresses and displacements change next to a slip front.
+
+    A front c moves the stress by (E*/pi) g'(c) dc/sqrt(c^2 - r^2), and the foundation by g'(c) dc.
+    For c < a/2 these are taken over the mean pressure F_N/(pi a^2) and the depth; next to a flat,
+    which c does not reach, and for larger c both distances are `scale`.
+    """
+    profile, top, a = contact.profile, contact.coordinate, contact.contact_radius
+    inner = (c > 0) & (c < a / 2) & (profile.first_radius == 0)
+    if not some(inner):
+        return scale, scale
+    with np.errstate(all="ignore"):
+        slope = profile.dg(c)
+        stress = c * np.square(profile.reduced_force(top) / (2 * a * a * slope))
+        return where(inner, stress, scale), where(inner, profile.depth(top) / slope, scale)
 
 
 def edge_error(
     contact: NormalContact | TangentialContact | ContactState, name: str, radius: ArrayLike
 ) -> float:
-    """Return the error of a field by that of the edges, relative to its largest value [1].
+    """Return the error of a field by the errors of the edges, relative to its largest value [1].
 
     Edges are the contact radius and the slip fronts if they follow from a load. Radii within four
     units in the last place of an edge are excluded, because the relative error at a root is
@@ -105,15 +126,26 @@ def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
     used = (edges.error > 0) & (edges.scale > 0)
     if not some(used):
         return 0.0
-    at, error, scale = (part[used] for part in edges)
+    at, error, scale, reach = (part[used] for part in edges)
     if not root:
-        return float((2 * error / scale).max())
-    # The nearest radii on either side of each edge.
+        return float((2 * error / reach).max())
+    # The nearest radii on either side of each edge. An edge does not change stresses outside.
     r, away = np.concatenate([(-inf,), radius, (inf,)]), at * ADJACENT
     r.sort()
     below = at - r[r.searchsorted(at - away) - 1]
     above = r[r.searchsorted(at + away, side="right")] - at
-    return float((error / (2 * np.sqrt(np.minimum(below, above) * scale))).max())
+    nearest = np.minimum(below, where(above <= error, above, inf))
+    return float((error / (2 * np.sqrt(nearest * scale))).max())
+
+
+def own_error(contact: NormalContact | TangentialContact | LoadHistory) -> float:
+    """Return the error of fields apart from `edge_error`, relative to their largest value [1].
+
+    Next to full slip the stick radius is ill-conditioned, which `edge_error` contains.
+    """
+    if isinstance(contact, TangentialContact):
+        return extremes(contact.step_error)[1]
+    return contact.error_estimate
 
 
 def grid(contact: NormalContact | TangentialContact | ContactState, points: int) -> Array:

@@ -2,8 +2,7 @@
 
 Between two neighbouring slip fronts dq_x/dq = mu k, k the slope of the anchors: 0 where the springs
 stick under a monotonic load, 1 where they slip. The stress is therefore a sum of kernels, each over
-the annulus between two fronts. On the arcs that nonlinear load steps leave, k varies with the
-radius, and the kernels are superposed.
+the annulus between two fronts.
 """
 
 from collections.abc import Callable
@@ -16,7 +15,6 @@ from numpy.typing import ArrayLike
 from mdr_core import equivalent_1d
 from mdr_core.abel.annulus import Annulus
 from mdr_core.doubles import ADJACENT
-from mdr_core.fields.arc import Arc
 from mdr_core.fields.normal import by_load, fill, stress
 from mdr_core.history import ContactState
 from mdr_core.profiles import Profile
@@ -26,7 +24,7 @@ from mdr_core.validation import require_type
 
 
 class Traction(NamedTuple):
-    """Annuli of a contact under one load, from the axis, on which the anchors have one formula."""
+    """Annuli of a contact under one load, from the axis, each with one slope of the anchors."""
 
     profile: Profile
     e_star: float
@@ -37,15 +35,14 @@ class Traction(NamedTuple):
     coordinate: Array
     """Contact coordinates of the ends, shape (n + 1,)."""
     radius: Array
-    """The same as radii [length]."""
+    """Radii of the ends [length], shape (n + 1,)."""
     width: Array
-    """Widths in the contact coordinate, shape (n,)."""
+    """Widths in the contact coordinate, shape (n,). The coordinate of a flat punch is its depth,
+    and all its springs carry the load of a depth `width`."""
     slope: Array
-    """k [1]; zero on an arc."""
+    """k [1], shape (n,)."""
     above: Array
     """q_x/(mu E*) at their outer ends [length], shape (n,)."""
-    arcs: tuple[Arc | None, ...] = ()
-    """Arc of each annulus; none at all if all load steps are linear."""
     exact: bool = False
     """True if the contact radius is prescribed."""
     excess: float = 0.0
@@ -63,14 +60,10 @@ class Traction(NamedTuple):
         for i in np.flatnonzero(self.slope).tolist():
             a = float(self.radius[i + 1])
             result += self.slope[i] * stress(self.profile, self.annulus(i), a, r)
-        for arc in filter(None, self.arcs):
-            result += arc.stress(r) / np.pi
         return result
 
     def step(self, i: int, x: Array) -> Array:
         """Return the growth of q_x/(mu E*) from the outer end of the i-th annulus to x [length]."""
-        if self.arcs and (arc := self.arcs[i]):
-            return arc.anchor_step(np.maximum(x, arc.low))
         if not self.slope[i]:
             return np.zeros(x.shape)
         at = np.maximum(self.profile.coordinate_from_radius(x), self.coordinate[i])
@@ -120,7 +113,7 @@ def shear_stress(contact: TangentialContact | ContactState, radius: ArrayLike) -
 def slip(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
     """Return the slip s(r) = u(r) - u_x of the surface in the contact [length].
 
-    It is the displacement u(r) of the surface less that of the body.
+    u(r) is the displacement of the surface, u_x the displacement of the body.
 
     s = -mu (E*/G*) sum (k_i - k_i-1) S(x_i-1; r), S the slip kernel; zero in the stick zone and
     outside the contact, negative for a positive displacement. In full slip the displacement
@@ -157,8 +150,6 @@ def slip(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
                 at = r[slips]
                 kernel = load.profile.slip_integral(np.full(at.shape, front), at)
                 result[slips] -= (above - below) * kernel
-        for arc in filter(None, load.arcs):
-            result[inside] -= arc.slip(r[inside])
         result *= load.ratio
         result[inside] -= load.excess
         return result
@@ -169,8 +160,8 @@ def slip(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
 def foundation_shear(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
     """Return q_x(x) of the foundation [force/length].
 
-    It is linear in g(x) between the slip fronts, except on an arc; G* u_x in the stick zone and
-    mu q(x) outside it under a monotonic load.
+    It is linear in g(x) between the slip fronts. Under a monotonic load it is G* u_x in the stick
+    zone and mu q(x) outside.
 
     Source: mdr-5, Eq. (5.23); notes, §10.
 
@@ -231,7 +222,7 @@ def tractions(
 
 def _at_end(state: ContactState) -> Traction:
     """Traction at the end of a load history."""
-    profile, segments = state.profile, state.segments
+    profile = state.profile
     modulus = state.friction_coefficient * state.e_star
     known = profile, state.e_star, modulus, state.displacement_ratio
     if not state.in_contact:
@@ -242,20 +233,8 @@ def _at_end(state: ContactState) -> Traction:
         ends = np.append(0.0, state.coordinate[-1])
         rows = profile.contact_radius(ends), np.abs(depth), np.sign(depth), 0 * depth
         return Traction(*known, ends, *rows)
-    radius = profile.contact_radius(segments.coordinate)
-    width = np.diff(segments.coordinate)
-    rows = segments.coordinate, radius, width, segments.slope
-    if not segments.rate.any():
-        return Traction(*known, *rows, state.load[1:] / modulus)
-    columns = (part.tolist() for part in (segments.rate, radius[:-1], radius[1:], width))
-    arcs = tuple(
-        Arc(profile, rate, segments.inverse, *interval) if rate else None
-        for rate, *interval in zip(*columns, strict=True)
-    )
-    load = Traction(*known, *rows, np.zeros(width.size), arcs)
-    steps = [load.step(i, radius[i : i + 1]) for i in range(1, width.size)]
-    above = np.cumsum(np.append(0.0, steps[::-1]))[::-1]
-    return load._replace(above=above)
+    radius, width = profile.contact_radius(state.coordinate), np.diff(state.coordinate)
+    return Traction(*known, state.coordinate, radius, width, state.slope, state.load[1:] / modulus)
 
 
 def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
@@ -279,7 +258,6 @@ def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
         top, a, edge, c, width = places
         ends, radii, widths, slopes, above = [0.0, top], [flat, a], [top], [0.0], [0.0]
         if profile.has_no_partial_slip:
-            # The kernel of a flat punch, which has no slip annulus, reads the depth from the width.
             widths = [top if slides else width]
             slopes = [sign if widths[0] > 0 else 0.0]
         elif slides:

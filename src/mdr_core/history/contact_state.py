@@ -7,9 +7,10 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from mdr_core.doubles import ROUNDING
 from mdr_core.elementwise import number
 from mdr_core.history import slip_memory
-from mdr_core.history.slip_layout import NORMAL, STEP
+from mdr_core.history.slip_layout import NORMAL
 from mdr_core.history.slip_memory import Polyline, VertexTree, read_only
 from mdr_core.history.step_results import SHORT, TractionVertices
 from mdr_core.interval_moments import IntervalMoments, interval_moments
@@ -25,18 +26,6 @@ from mdr_core.validation import (
     require_type,
     single,
 )
-
-
-class TractionSegments(NamedTuple):
-    """Intervals of the contact on which the slope of the anchor has one formula, from the axis."""
-
-    coordinate: Array
-    """Contact coordinates of their ends, shape (n + 1,)."""
-    slope: Array
-    """Slope of the anchor over depth, from -1 to 1; zero on an arc, see `rate`."""
-    rate: Array
-    """On an arc the slope is rate 2x, or rate/(2x) where `inverse`; zero on straight segments."""
-    inverse: bool = False
 
 
 class Edge(NamedTuple):
@@ -64,13 +53,11 @@ class ContactState(Results):
     g_star: float
     friction_coefficient: float
     polyline: Polyline
-    """Polyline over depths; chords stand for the arcs of nonlinear load steps."""
-    curved_segments: TractionSegments | None = None
-    """All segments, if nonlinear load steps have laid some, which are arcs; else None."""
+    """Polyline over depths."""
     before: Polyline | None = None
     """Polyline before the step of `advance` that led here; None for other states."""
     known_edges: list[Edge] = field(init=False, default_factory=list)
-    """Edges of the first vertices: those of a step are known to the next one."""
+    """Edges of the first vertices; a step passes the edges it keeps to the next state."""
     quantities: ClassVar[tuple[str, ...]] = (
         "indentation_depth",
         "normal_force",
@@ -114,11 +101,11 @@ class ContactState(Results):
 
     @property
     def _edges(self) -> list[Edge]:
-        """Edges of all vertices, at least that on the axis."""
+        """Edges of all vertices; in separation one on the axis."""
         known = self.known_edges
         if not known:
             known.append(Edge(*(number(0.0),) * 3))
-        vertices, start = self.polyline.vertices[:, NORMAL:STEP].tolist(), len(known)
+        vertices, start = self.polyline.vertices[:, NORMAL:].tolist(), len(known)
         for lower, upper in pairwise(vertices[start - 1 :]):
             known.append(self._edge(known[-1], number(upper[0] - lower[0]), *map(number, upper)))
         return known
@@ -150,20 +137,13 @@ class ContactState(Results):
 
     @cached_property
     def coordinate(self) -> Array:
-        """Contact coordinates of the vertices; in separation that of the axis."""
+        """Contact coordinates of the vertices; in separation one on the axis."""
         return read_only(np.array([edge.coordinate for edge in self._edges]))
 
     @cached_property
     def slope(self) -> Array:
         """Slope of the anchor over depth below each vertex but the first, from -1 to 1."""
         return read_only(self._tree.slope[1:])
-
-    @cached_property
-    def segments(self) -> TractionSegments:
-        """Segments of the traction, with the arcs of nonlinear load steps; none in separation."""
-        if self.curved_segments is not None:
-            return self.curved_segments
-        return TractionSegments(self.coordinate, self.slope, np.zeros(self.slope.shape))
 
     @property
     def contact_radius(self) -> float:
@@ -207,8 +187,18 @@ class ContactState(Results):
         """Radii inside the contact between two segments of q_x, ascending [length]."""
         if self.profile.has_no_partial_slip:
             return np.zeros(0)
-        edges = self.coordinate if self.curved_segments is None else self.curved_segments.coordinate
-        return self.profile.contact_radius(edges[1:-1])
+        return self.profile.contact_radius(self.coordinate[1:-1])
+
+    @property
+    def front_errors(self) -> Array:
+        """Errors of `slip_fronts` by the rounding of the forces that they follow from [length]."""
+        forces, fronts = (np.array([edge[i] for edge in self._edges]) for i in (1, 0))
+        if self.profile.has_no_partial_slip or fronts.size < 3:
+            return np.zeros(0)
+        moved = np.minimum(forces[1:-1] + ROUNDING * forces[-1], forces[-1])
+        ends = np.array([fronts[1:-1], self.profile.coordinate_from_reduced_force(moved)])
+        inner, outer = self.profile.contact_radius(ends)
+        return np.maximum(outer - inner, 0.0)
 
     @property
     def tangential_force(self) -> float:
@@ -263,8 +253,7 @@ def advance(
 
     Parameters
     ----------
-    state : state from `unloaded`, from an earlier step, or at the end of a history. After
-        nonlinear load steps chords stand for the arcs, with a relative error of up to about 1e-5.
+    state : state from `unloaded`, from an earlier step, or at the end of a history.
     indentation_depth : d after the step [length].
     tangential_displacement : u_x after the step [length].
 

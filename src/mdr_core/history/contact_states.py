@@ -1,4 +1,4 @@
-"""States of many contacts of one profile, as of a discrete element method, and one step of all."""
+"""States of many contacts of one profile, for discrete elements, and one step of all of them."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import ContactState
-from mdr_core.history.slip_layout import NORMAL, STEP
+from mdr_core.history.slip_layout import NORMAL
 from mdr_core.history.slip_memory import Polyline, VertexTree
 from mdr_core.history.step_results import TractionVertices
 from mdr_core.interval_moments import interval_moments
@@ -52,7 +52,7 @@ class ContactStates:
     def __getitem__(self, index: int) -> ContactState:
         at = range(len(self))[index]
         before, line = self.before and self.before.line(at), self.polylines.line(at)
-        return replace(self.contact, polyline=line, before=before, curved_segments=None)
+        return replace(self.contact, polyline=line, before=before)
 
     @cached_property
     def _edges(self) -> TractionVertices:
@@ -60,7 +60,7 @@ class ContactStates:
         begins = np.append(0, ends[:-1])
         parent = np.arange(-1, len(vertices) - 1, dtype=np.intp)
         parent[begins[begins < ends]] = -1
-        top, rows = np.where(begins < ends, ends - 1, -1), vertices[:, NORMAL:STEP].T
+        top, rows = np.where(begins < ends, ends - 1, -1), vertices[:, NORMAL:].T
         tree = VertexTree(parent, rows, top, (-1, 0.0, 0.0), load_points)
         return TractionVertices(interval_moments(self.contact.profile, over_forces=False), tree)
 
@@ -84,7 +84,7 @@ def advance_many(
 ) -> ContactStates:
     """Return the states of many contacts after one straight step of each, exactly.
 
-    Results are those of `advance`, contact by contact, in a tenth of the time or less.
+    Each contact has the results of `advance`, in a tenth of the time or less.
 
     Source: mdr-5, Eqs. (5.4)-(5.9); notes, §10.
 

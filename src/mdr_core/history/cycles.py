@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from mdr_core.controls import default_samples
 from mdr_core.errors import AccuracyError, InputError
 from mdr_core.history.solver import LoadHistory, solve
 from mdr_core.materials import Material
@@ -58,7 +59,7 @@ def cycles(
     tangential_displacement: float | None = None,
     tangential_force: float | None = None,
     count: int = 1,
-    samples_per_step: int = 1,
+    samples_per_step: int | None = None,
 ) -> LoadCycles:
     """Return cycles of tangential load, the normal load constant or in phase with it.
 
@@ -71,10 +72,11 @@ def cycles(
     ----------
     profile, e_star, g_star, friction_coefficient : as for `solve`.
     indentation_depth, normal_force : exactly one, the mean [length], [force].
-    normal_amplitude : of the same quantity, >= 0, at most the mean.
+    normal_amplitude : amplitude of the normal load [length], [force], >= 0, at most the mean.
     tangential_displacement, tangential_force : exactly one, the amplitude [length], [force].
     count : number of cycles.
-    samples_per_step : evenly spaced samples on each of the 2 + 2 `count` load steps.
+    samples_per_step : evenly spaced samples on each of the 2 + 2 `count` load steps; by default
+        20 where controls of different pairs both oscillate, else 1.
 
     Returns
     -------
@@ -98,6 +100,10 @@ def cycles(
     True
     """
     mean = indentation_depth if normal_force is None else normal_force
+    if samples_per_step is None:
+        normal = "indentation_depth" if normal_force is None else "normal_force"
+        tangential = "tangential_displacement" if tangential_force is None else "tangential_force"
+        samples_per_step = default_samples(normal, tangential, normal_amplitude)
     if mean is not None and not 0 <= normal_amplitude <= mean:
         raise InputError(("history", "normal", "amplitude"), "must lie between 0 and the mean")
     if count < 1:

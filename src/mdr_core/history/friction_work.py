@@ -1,17 +1,17 @@
 """Work of friction on each step, from the parts of the polylines that the slip front sweeps.
 
 On a step from P to P' the load point moves evenly. A spring slips from the moment at which it
-exceeds the load point in one of the sums, f or b, until the end of the step, or of its contact. Its
-anchor moves by the decrease of this sum since then, under the friction n_P - n, which changes
+exceeds the load point in one of the sums, f or b, until the end of the step or the loss of contact.
+Its anchor moves by the decrease of this sum since then, under the friction n_P - n, which changes
 evenly. The work on the spring, over (mu E*)^2/G*, is
 
     M(n) = (decrease of the sum) (friction at first + friction at last)/2,
 
-and that on all of them int M(n) 2 dx. Both factors are linear in n between the vertices, the normal
-coordinate of P', and the place at which the path of P passes through the polyline, beyond which the
-other sum is exceeded first. In Bernstein moments of the springs the work is a sum of positive
-terms. Where forces are prescribed the identity holds with the reduced force in place of the depth
-and the measure |d(1/2x)| in place of 2 dx. Source: notes, §10.
+and the work on all springs is int M(n) 2 dx. Both factors are linear in n between the vertices, the
+normal coordinate of P', and the place at which the path of P passes through the polyline. Beyond
+this place the other sum is exceeded first. In Bernstein moments of the springs the work is a sum of
+positive terms. Where forces are prescribed the identity holds with the reduced force in place of
+the depth and the measure |d(1/2x)| in place of 2 dx. Source: notes, §10.
 """
 
 from typing import NamedTuple

@@ -1,8 +1,10 @@
 """Load path: from the given points to the load points of the slip memory.
 
-It starts from the unloaded bodies, or from the end of another path, whose state JSON can hold. A
-load step is straight where displacements, or forces, are prescribed in both directions. If one of
-each pair is prescribed and both change, it is nonlinear in either plane: see `nonlinear_steps`.
+It starts from the unloaded bodies, or from the end of another path, whose state JSON can hold.
+
+Both loads vary linearly between two samples, in the plane in which the tangential control is exact:
+a displacement with the depth, a tangential force with the normal force. If the normal control
+belongs to the other pair, it is converted at the samples.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,6 +15,7 @@ from typing import Any, Final, NamedTuple, Self
 
 import numpy as np
 
+from mdr_core.controls import are_of_different_pairs
 from mdr_core.doubles import ROUNDING
 from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
@@ -24,10 +27,6 @@ from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.validation import require_finite, require_not_negative
 
-# Numbers of an arc.
-_ARC: Final = 3
-SETS: Final = 3
-"""Sets of chords from which the results of nonlinear load steps are extrapolated."""
 # Attributes that define a table, which has no parameters.
 _TABLE: Final = ("r", "values", "breaks", "uncertainty")
 
@@ -45,12 +44,10 @@ class SavedState(NamedTuple):
     """Energy dissipated by friction since the bodies were unloaded."""
     regime: str
     """Slip regime."""
-    polylines: Sequence[Sequence[Sequence[float]]]
-    """Polyline of the slip memory, or those on each set of chords of nonlinear load steps.
+    polyline: Sequence[Sequence[float]]
+    """Sums normal + anchor and normal - anchor of the vertices below the load point, from the axis.
 
-    They have the vertices below the load point, from the axis: the sums normal + anchor and normal
-    - anchor, and where the segment above is part of an arc its rate, and the conjugate and the
-    tangential coordinate of its end.
+    None in separation.
     """
 
     @classmethod
@@ -64,63 +61,67 @@ class SavedState(NamedTuple):
             raise InputError(("initial_state", "regime"), detail)
         if given["contact"] != contact:
             detail = "belongs to another profile, material, friction coefficient or control"
-            raise InputError(("initial_state", "contact"), f"{detail}: repeat those of the state")
-        if len(given["polylines"]) not in {1, SETS}:
-            raise InputError(("initial_state", "polylines"), f"must be one polyline, or {SETS}")
+            raise InputError(("initial_state", "contact"), f"{detail}: repeat all four")
         return cls(**given)
 
-    def restored(self, normal: float, tangential: float) -> tuple[tuple[Polyline, ...], Array]:
-        """Return the polylines up to the load point, and the arcs, shape (3, m).
+    def restored(self, normal: float, tangential: float) -> Polyline:
+        """Return the polyline up to the load point.
 
-        The load steps of the segments are the indices of their arcs, from the end.
-
-        Raises InputError if a polyline is impossible, because friction limits its slope.
+        Raises InputError if the polyline is impossible, because friction limits its slope.
         """
-        place = "initial_state", "polylines"
-        empty = {not line for line in self.polylines} | {self.regime == "no_contact"}
-        if empty != {normal <= 0}:
+        place = "initial_state", "polyline"
+        if {not self.polyline, self.regime == "no_contact"} != {normal <= 0}:
             raise InputError(place, "must be empty, and the regime no_contact, only in separation")
         if normal <= 0:
-            lines = [slip_memory.separated(normal, tangential)] * len(self.polylines)
-            return tuple(lines), np.zeros((_ARC, 0))
-        columns, none = NORMAL + _ARC, [0.0] * _ARC
-        rows = [np.array([(*row, *none)[:columns] for row in line]) for line in self.polylines]
-        arcs, labels = np.unique(np.concatenate(rows)[:, NORMAL:], axis=0, return_inverse=True)
-        label, found = iter((labels.ravel() - len(arcs)).tolist()), []
-        for index, vertices in enumerate(rows):
-            sums, steps = vertices[:, :NORMAL], [next(label) for _ in vertices]
-            line = slip_memory.through(sums, steps, normal, tangential)
-            growth = np.diff(line.vertices[:, :NORMAL], axis=0)
-            # By rounding a sum may decrease along a polyline.
-            good = (growth.min(axis=1) >= -ROUNDING * normal) & (growth.max(axis=1) > 0)
-            good[0] &= line.vertices[0, NORMAL] == 0
-            if not good.all():
-                detail = "exceeds the next vertex in a sum, or is the first one and not on the axis"
-                raise InputError((*place, index, int(np.argmin(good))), detail)
-            found.append(line)
-        return tuple(found), arcs.T
+            return slip_memory.separated(normal, tangential)
+        line = slip_memory.through(np.array(self.polyline), normal, tangential)
+        growth = np.diff(line.vertices[:, :NORMAL], axis=0)
+        # By rounding a sum may decrease along a polyline.
+        good = (growth.min(axis=1) >= -ROUNDING * normal) & (growth.max(axis=1) > 0)
+        good[0] &= line.vertices[0, NORMAL] == 0
+        if not good.all():
+            detail = "exceeds the next vertex in a sum, or is the first one and not on the axis"
+            raise InputError((*place, int(np.argmin(good))), detail)
+        return line
 
 
-UNLOADED: Final = SavedState("", 0.0, 0.0, 0.0, "no_contact", ([],))
+UNLOADED: Final = SavedState("", 0.0, 0.0, 0.0, "no_contact", ())
 """State of bodies before first contact."""
 
 
 @dataclass(frozen=True)
 class SampledPath:
-    """Samples of a load history, in the quantities that are prescribed."""
+    """Points and samples of a load history, in the quantities that are prescribed."""
 
     start: ContactState
     """The unloaded contact."""
     normal_name: str
     tangential_name: str
-    normal_loads: Array
-    """Depth or normal force at the start and at each sample, shape (n + 1,)."""
-    tangential_loads: Array
-    """Displacement or tangential force at the start and at each sample, shape (n + 1,)."""
+    normal_points: Array
+    """Depth or normal force at the start and at each point, shape (m + 1,)."""
+    tangential_points: Array
+    """Displacement or tangential force at the start and at each point, shape (m + 1,)."""
     per_step: int
-    """Samples on each load step, the last of which is its given point."""
+    """Samples on each load step, the last of which is its point; n = m per_step in total."""
     begin: SavedState
     """State at the start."""
+
+    @cached_property
+    def normal_loads(self) -> Array:
+        """Depth or normal force at the start and at each sample, shape (n + 1,)."""
+        return _along(self.normal_points, self.per_step)
+
+    @cached_property
+    def tangential_loads(self) -> Array:
+        """Displacement or tangential force at the start and at each sample, shape (n + 1,)."""
+        loads = _along(self.tangential_points, self.per_step)
+        if self.per_step > 1 and self.mixed:
+            rows, normal = (
+                each[1:].reshape(-1, self.per_step) for each in (loads, self.normal_coordinate)
+            )
+            straight = self._from_zero & (normal[:, -1] > 0)
+            rows[straight] = rows[straight, -1:] * (normal[straight] / normal[straight, -1:])
+        return loads
 
     @property
     def normal(self) -> Array:
@@ -135,14 +136,7 @@ class SampledPath:
     @cached_property
     def step(self) -> Indices:
         """Load step of each sample: the index of the given point that it ends at."""
-        return np.repeat(np.arange(self.normal.size // self.per_step), self.per_step)
-
-    @property
-    def continues(self) -> Flags:
-        """Samples on the same load step as the one before."""
-        flags = np.ones((self.normal.size // self.per_step, self.per_step), dtype=bool)
-        flags[:, 0] = False
-        return flags.ravel()
+        return np.repeat(np.arange(self.normal_points.size - 1), self.per_step)
 
     @property
     def over_forces(self) -> bool:
@@ -155,92 +149,99 @@ class SampledPath:
         return self.normal_name == "indentation_depth"
 
     @property
+    def mixed(self) -> bool:
+        """The controls are of different pairs, so that the normal control is converted."""
+        return are_of_different_pairs(self.normal_name, self.tangential_name)
+
+    @property
+    def _from_zero(self) -> Flags:
+        """Load steps from zero load, which are straight as a whole, shape (m,)."""
+        return np.asarray((self.normal_points[:-1] == 0) & (self.tangential_points[:-1] == 0))
+
+    @property
+    def _continues(self) -> Flags:
+        """Samples that continue the straight line of the sample before, shape (n,)."""
+        flags = np.ones((self.normal_points.size - 1, self.per_step), dtype=bool)
+        flags[:, 0] = False
+        if self.mixed:
+            points = self.normal_points, self.tangential_points
+            one, other = (np.diff(each) == 0 for each in points)
+            flags &= (one | other | self._from_zero)[:, None]
+        return flags.ravel()
+
+    @property
     def moments(self) -> IntervalMoments:
         """Moments over intervals of the normal coordinate."""
         return interval_moments(self.start.profile, over_forces=self.over_forces)
 
-    @property
-    def nonlinear(self) -> Flags:
-        """Samples whose step is straight neither over depths nor over forces."""
-        if self.over_forces != self.depth_prescribed:
-            return np.zeros(self.normal.shape, dtype=bool)
-        first, second = (np.diff(each) != 0 for each in (self.normal_loads, self.tangential_loads))
-        return np.asarray(first & second)
-
     @cached_property
-    def prescribed(self) -> Array:
-        """Depth [length] or reduced force F_N/E* [length^2] at the start and at each sample."""
+    def normal_coordinate(self) -> Array:
+        """Depth or reduced force at the start and at each sample, <= 0 in separation."""
         loads = self.normal_loads
-        return loads if self.depth_prescribed else loads / self.start.e_star
-
-    @cached_property
-    def contact_coordinate(self) -> Array:
-        """Contact coordinate at the start and at each sample, that of zero load in separation."""
+        if not self.depth_prescribed:
+            loads = loads / self.start.e_star
+        if not self.mixed:
+            return loads
         # Equal loads get equal coordinates: the last bit may depend on an element's position.
-        load, index = np.unique(np.maximum(self.prescribed, 0.0), return_inverse=True)
+        load, index = np.unique(np.maximum(loads, 0.0), return_inverse=True)
         of_force = not self.depth_prescribed
-        found = self.start.profile.coordinate_from_load(load, of_force=of_force)
-        return np.asarray(found[index])
-
-    @property
-    def _normal_coordinate(self) -> Array:
-        """Normal coordinate at the start and at each sample, <= 0 in separation."""
-        prescribed = self.prescribed
-        if self.depth_prescribed != self.over_forces:
-            return prescribed
-        s, index = np.unique(self.contact_coordinate, return_inverse=True)
-        return np.where(prescribed > 0, self.moments.normal(s)[index], np.minimum(prescribed, 0.0))
+        s = self.start.profile.coordinate_from_load(load, of_force=of_force)
+        return np.where(loads > 0, self.moments.normal(s)[index], np.minimum(loads, 0.0))
 
     @property
     def load_points(self) -> LoadPoints:
         """One straight step to each sample, in normal coordinates and reduced tangential loads."""
         normal, tangential = self.coordinates[:, 1:]
-        return LoadPoints(normal, tangential, self.continues, self.step)
+        return LoadPoints(normal, tangential, self._continues)
 
     @cached_property
-    def at_start(self) -> tuple[tuple[Polyline, ...], Array]:
-        """Polylines at the start, and arcs that their segments are part of, see `SavedState`."""
+    def at_start(self) -> Polyline:
+        """Polyline at the start."""
         return self.begin.restored(*self.coordinates[:, 0].tolist())
 
     @cached_property
     def coordinates(self) -> Array:
         """Normal and tangential coordinate at the start and at each sample, shape (2, n + 1).
 
-        Raises InputError for a tangential force above mu F_N at a sample.
+        Raises InputError for a tangential force without equilibrium.
         """
         scale = self.start.friction_coefficient * self.start.e_star
         scale /= 1.0 if self.over_forces else self.start.g_star
-        normal, tangential = self._normal_coordinate, self.tangential_loads / scale
+        normal, tangential = self.normal_coordinate, self.tangential_loads / scale
+        limit = np.maximum(normal, 0.0) if self.over_forces else normal
         if self.over_forces:
-            tangential = self.within_friction(normal, tangential, np.append(-1, self.step))
-        else:
-            tangential = _at_limit(normal, tangential)
-        return np.array([normal, tangential])
+            self._require_equilibrium(limit, tangential)
+        # Tangential loads at the limit but for rounding errors are at the limit.
+        near = np.abs(np.abs(tangential) - limit) <= ROUNDING * limit
+        return np.array([normal, np.where(near, np.copysign(limit, tangential), tangential)])
 
-    def within_friction(self, normal: Array, tangential: Array, step: Indices) -> Array:
-        """Return tangential forces that do not exceed friction.
+    def _require_equilibrium(self, limit: Array, tangential: Array) -> None:
+        """Raise InputError for a force above friction, or one that acts at a gap.
 
         Parameters
         ----------
-        normal, tangential : reduced forces F_N/E* and F_x/(mu E*) [length^2], shape (n,).
-        step : load step of each, -1 at the start.
-
-        Raises
-        ------
-        InputError : a tangential force above mu F_N, by the index of its load step.
+        limit, tangential : reduced forces F_N/E* and F_x/(mu E*) at the start and at each sample
+            [length^2], shape (n + 1,).
         """
-        limit = np.maximum(normal, 0.0)
+        force, depth = self.tangential_points, self.normal_points
+        apart = np.minimum(depth[:-1], depth[1:]) < 0
+        at_gap = apart & ((force[:-1] != 0) | (force[1:] != 0))
+        if at_gap.any():
+            place = "history", "tangential", self.tangential_name, int(np.argmax(at_gap))
+            detail = (
+                "no equilibrium: a tangential force acts where the bodies touch or separate; add a "
+                "point in contact without the force, or prescribe tangential_displacement"
+            )
+            raise InputError(place, detail)
         beyond = np.flatnonzero(np.abs(tangential) > limit * (1 + ROUNDING))
         if beyond.size:
-            at = int(step[beyond[0]])
-            place = "history", "tangential", self.tangential_name, at
-            raise InputError(
-                place if at >= 0 else ("initial_state", "tangential"),
+            place = "history", "tangential", self.tangential_name, int(self.step[beyond[0] - 1])
+            detail = (
                 "no equilibrium: between the point before and this one the force exceeds "
-                "friction_coefficient x normal_force; reduce it, or prescribe "
-                "tangential_displacement",
+                "friction_coefficient x normal_force; reduce it, change the two loads in turn, or "
+                "prescribe tangential_displacement"
             )
-        return _at_limit(limit, tangential)
+            raise InputError(place if beyond[0] else ("initial_state", "tangential"), detail)
 
 
 def build(
@@ -250,7 +251,7 @@ def build(
     samples_per_step: int,
     begin: SavedState = UNLOADED,
 ) -> SampledPath:
-    """Return the samples on the straight steps between the given points.
+    """Return the load path through the given points.
 
     Parameters
     ----------
@@ -276,20 +277,14 @@ def build(
         )
     points = np.broadcast_arrays(normal_points, tangential_points)
     first, second = (
-        _along(np.append(before, each), samples_per_step)
+        np.append(before, each)
         for before, each in zip((begin.normal, begin.tangential), points, strict=True)
     )
     return SampledPath(start, normal[0], tangential[0], first, second, samples_per_step, begin)
 
 
-def _at_limit(limit: Array, tangential: Array) -> Array:
-    """Return tangential loads, those at the limit but for rounding errors exactly there."""
-    near = np.abs(np.abs(tangential) - limit) <= ROUNDING * limit
-    return np.where(near, np.copysign(limit, tangential), tangential)
-
-
 def _along(points: Array, count: int) -> Array:
-    """The first point, and samples that divide the steps to the following ones evenly."""
+    """Return the first point, and samples that divide each step to the next point evenly."""
     if count == 1:
         return points
     start, stop = points[:-1, None], points[1:, None]
@@ -309,13 +304,10 @@ def _checked(axis: str, name: str, value: Array) -> Array:
     return points
 
 
-def saved(line: Polyline, arcs: Array | None) -> list[list[float]]:
-    """Return the vertices of a polyline below the load point, as `SavedState` has them."""
-    rows = line.vertices[:-1, :NORMAL].tolist()
-    if arcs is None:
-        return rows
-    above = arcs[:, line.load_step[1:]].T.tolist()
-    return [row + arc if arc[0] else row for row, arc in zip(rows, above, strict=True)]
+def saved(line: Polyline) -> list[list[float]]:
+    """Return the sums of the vertices below the load point, as `SavedState` has them."""
+    rows: list[list[float]] = line.vertices[:-1, :NORMAL].tolist()
+    return rows
 
 
 def digest(start: ContactState, *controls: str) -> str:

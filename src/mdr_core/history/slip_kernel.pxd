@@ -2,7 +2,7 @@
 
 cimport cython
 
-cdef Py_ssize_t FORWARD, BACKWARD, NORMAL, SLOPE, STEP
+cdef Py_ssize_t FORWARD, BACKWARD, NORMAL, SLOPE
 cdef double ADJACENT
 
 
@@ -15,24 +15,22 @@ cdef class PolylineStack:
 
     @cython.locals(at=Py_ssize_t, i=Py_ssize_t, made=Py_ssize_t, row=Py_ssize_t)
     cpdef Py_ssize_t run(
-        self, double[:, ::1] path, unsigned char[::1] continues, Py_ssize_t[::1] load_step,
-        Py_ssize_t[::1] number, Py_ssize_t[::1] parent, double[:, ::1] vertices,
-        Py_ssize_t[::1] tops
+        self, double[:, ::1] path, unsigned char[::1] continues, Py_ssize_t[::1] number,
+        Py_ssize_t[::1] parent, double[:, ::1] vertices, Py_ssize_t[::1] tops
     )
     @cython.locals(begin=Py_ssize_t, i=Py_ssize_t, made=Py_ssize_t, size=Py_ssize_t)
     cpdef Py_ssize_t run_each(
         self, Py_ssize_t[::1] ends, double[:, ::1] path, const double[:, ::1] vertices,
         double[:, ::1] moved, Py_ssize_t[::1] moved_ends
     )
-    cpdef void move(self, double x, double y, bint continues, double load_step) noexcept
+    cpdef void move(self, double x, double y, bint continues) noexcept
     @cython.locals(below=Py_ssize_t)
-    cdef void _stick(self, double deeper, double further, double load_step) noexcept
+    cdef void _stick(self, double deeper, double further) noexcept
     @cython.locals(upper=Py_ssize_t, in_forward=bint, at_vertex=bint)
     cdef void _slip(self, double forward, double backward) noexcept
-    cdef void _extend(self, Py_ssize_t below, double slope, double load_step) noexcept
+    cdef void _extend(self, Py_ssize_t below, double slope) noexcept
     cdef void _put(
-        self, Py_ssize_t at, double forward, double backward, double normal, double slope,
-        double step
+        self, Py_ssize_t at, double forward, double backward, double normal, double slope
     ) noexcept
 
 

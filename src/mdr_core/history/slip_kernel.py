@@ -6,14 +6,14 @@ bits, about a hundred times slower. One file holds all functions, since Cython i
 module only.
 """
 
-from mdr_core.history.slip_layout import NORMAL, SLOPE, STEP
+from mdr_core.history.slip_layout import NORMAL, SLOPE
 from mdr_core.typing import Array, Flags, Indices
 
 # Columns of the sums of a vertex.
 FORWARD = 0  # normal + anchor
 BACKWARD = 1  # normal - anchor
-# Part of the sums of a corner below which a change is rounding error; that of `doubles`, which has
-# no C type.
+# Relative size below which a change of a corner's sums is rounding error. It is the constant of
+# `doubles`, which has no C type.
 ADJACENT = 2.0**-50
 
 
@@ -26,7 +26,7 @@ class PolylineStack:
         V_0 ... V_k, C, P'   otherwise; k is the last vertex with f_k <= f' and b_k <= b'.
 
     The corner C is the place between V_k and V_k+1 at which the second of the two sums falls to
-    that of P'. Its other sum is that of the segment there; between C and P' the other sum grows
+    its value at P'. The other sum of C is its value on the segment; between C and P' it grows
     alone. If the axis exceeds P' as well, all springs slip, and C lies on the axis.
 
     Parameters
@@ -50,7 +50,6 @@ class PolylineStack:
         self,
         path: Array,
         continues: Flags,
-        load_step: Indices,
         number: Indices,
         parent: Indices,
         vertices: Array,
@@ -61,15 +60,15 @@ class PolylineStack:
         Parameters
         ----------
         path : normal and tangential coordinate of the load points, shape (2, n).
-        continues, load_step : see `move`, shape (n,).
+        continues : see `move`, shape (n,).
         number : index of each vertex on the stack.
-        parent, vertices : those on the stack; receive the parent of every new one, -1 on the axis,
-            and its normal coordinate and slope.
+        parent, vertices : parents, normal coordinates and slopes of the vertices on the stack;
+            receive the parent of every new vertex, -1 on the axis, and its coordinate and slope.
         tops : receives the vertex of each load point, -1 in separation.
         """
         made = self.top + 1
         for i in range(len(tops)):
-            self.move(path[0, i], path[1, i], continues[i], load_step[i])
+            self.move(path[0, i], path[1, i], continues[i])
             for at in range(self.changed, self.top + 1):
                 number[at] = made
                 parent[made] = number[at - 1] if at > 0 else -1
@@ -98,7 +97,7 @@ class PolylineStack:
             self.top = size - 1
             self.x = path[0, i]
             self.y = path[1, i]
-            self.move(path[2, i], path[3, i], continues=False, load_step=0)
+            self.move(path[2, i], path[3, i], continues=False)
             size = self.top + 1
             moved[made : made + size] = self.rows[:size]
             begin = ends[i]
@@ -106,7 +105,7 @@ class PolylineStack:
             moved_ends[i] = made
         return made
 
-    def move(self, x: float, y: float, continues: bool, load_step: int) -> None:  # noqa: FBT001
+    def move(self, x: float, y: float, continues: bool) -> None:  # noqa: FBT001
         """Move the load point by one straight step.
 
         Parameters
@@ -114,7 +113,6 @@ class PolylineStack:
         x, y : normal and tangential coordinate after the step; x <= 0 in separation.
         continues : true if the step continues the straight line of the one before: without slip it
             extends the last segment.
-        load_step : number by which the segments of the step are found again.
         """
         x0 = self.x
         y0 = self.y
@@ -130,7 +128,7 @@ class PolylineStack:
             # Contact begins where the straight step crosses normal coordinate zero.
             y0 = y0 + (y - y0) * (-x0 / (x - x0))
             x0 = 0.0
-            self._put(0, y0, -y0, 0.0, 0.0, 0.0)
+            self._put(0, y0, -y0, 0.0, 0.0)
             self.top = self.changed = 0
         rise = x + y - self.rows[self.top, FORWARD]
         fall = x - y - self.rows[self.top, BACKWARD]
@@ -140,10 +138,10 @@ class PolylineStack:
         else:
             self.straight = self.straight and continues
             if rise > 0 or fall > 0:
-                self._stick(x - x0, y - y0, load_step)
+                self._stick(x - x0, y - y0)
                 self.straight = True
 
-    def _stick(self, deeper: float, further: float, load_step: float) -> None:
+    def _stick(self, deeper: float, further: float) -> None:
         """Extend the polyline straight to the load point; one segment for one straight line."""
         below = self.top
         if self.straight and below > 0:
@@ -157,7 +155,7 @@ class PolylineStack:
             slope = 1.0
         else:
             slope = min(max(further / deeper, -1.0), 1.0)
-        self._extend(below, slope, load_step)
+        self._extend(below, slope)
 
     def _slip(self, forward: float, backward: float) -> None:
         """Cut the polyline where it exceeds the sums of the load point, and extend it to there."""
@@ -166,16 +164,15 @@ class PolylineStack:
             self.rows[upper - 1, FORWARD] > forward or self.rows[upper - 1, BACKWARD] > backward
         ):
             upper -= 1
-        step = self.rows[upper, STEP]
         over_forward = self.rows[upper, FORWARD] - forward
         over_backward = self.rows[upper, BACKWARD] - backward
         if upper == 0:
             # All springs slip.
             in_forward = over_forward > 0
             if in_forward:
-                self._put(0, forward, -forward, 0.0, 0.0, step)
+                self._put(0, forward, -forward, 0.0, 0.0)
             else:
-                self._put(0, -backward, backward, 0.0, 0.0, step)
+                self._put(0, -backward, backward, 0.0, 0.0)
         else:
             # Lengths of the segment above the corner, of which the larger one decides.
             slope = self.rows[upper, SLOPE]
@@ -195,11 +192,11 @@ class PolylineStack:
                 upper -= 1
             else:
                 normal = max((forward + backward) / 2, self.rows[upper - 1, NORMAL])
-                self._put(upper, forward, backward, normal, slope, step)
+                self._put(upper, forward, backward, normal, slope)
         self.top = self.changed = upper
-        self._extend(upper, -1.0 if in_forward else 1.0, step)
+        self._extend(upper, -1.0 if in_forward else 1.0)
 
-    def _extend(self, below: int, slope: float, load_step: float) -> None:
+    def _extend(self, below: int, slope: float) -> None:
         """Push the load point onto a vertex; two segments on the same face become one."""
         forward = self.x + self.y
         backward = self.x - self.y
@@ -207,26 +204,23 @@ class PolylineStack:
             below -= 1
         if forward > self.rows[below, FORWARD] or backward > self.rows[below, BACKWARD]:
             below += 1
-            self._put(below, forward, backward, self.x, slope, load_step)
+            self._put(below, forward, backward, self.x, slope)
             self.changed = min(self.changed, below)
         self.top = below
         self.rows[below, NORMAL] = self.x
 
-    def _put(
-        self, at: int, forward: float, backward: float, normal: float, slope: float, step: float
-    ) -> None:
+    def _put(self, at: int, forward: float, backward: float, normal: float, slope: float) -> None:
         self.rows[at, FORWARD] = forward
         self.rows[at, BACKWARD] = backward
         self.rows[at, NORMAL] = normal
         self.rows[at, SLOPE] = slope
-        self.rows[at, STEP] = step
 
 
 def sweep(parent: Indices, vertices: Array, tops: Indices, fallen: Array, swept: Array) -> int:
     """List the parts of segments that the slip front sweeps on each step; return their number.
 
     On a step from P to P' a place of the polyline slips as soon as it exceeds the load point in one
-    of the sums f and b. The front moves down from P to where neither sum exceeds that of P'.
+    of the sums f and b. The front moves down from P to where neither sum exceeds its value at P'.
 
     Parameters
     ----------

@@ -4,7 +4,5 @@
 NORMAL = 2
 # Slope of the anchor on the segment below the vertex.
 SLOPE = 3
-# Load step that laid the segment.
-STEP = 4
 # Number of columns, of which the first are the sums normal + anchor and normal - anchor.
-COLUMNS = 5
+COLUMNS = 4

@@ -15,12 +15,11 @@ V_0 ... V_m a straight load step to P leaves
 
 `slip_kernel.PolylineStack` is this recurrence.
 
-The sums of a corner are copies of those of load points, so that errors do not accumulate. Normal
-coordinates are depths where displacements are prescribed, and reduced normal forces where forces
-are. Source: notes, §10.
+A corner takes its sums from load points, so that errors do not accumulate. Normal coordinates are
+depths where displacements are prescribed, and reduced normal forces where tangential forces are.
+Source: notes, §10.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
@@ -28,10 +27,10 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from mdr_core.history import slip_kernel as kernel
-from mdr_core.history.slip_layout import COLUMNS, NORMAL, SLOPE, STEP
+from mdr_core.history.slip_layout import COLUMNS, NORMAL, SLOPE
 from mdr_core.typing import Array, Flags, Indices
 
-# A step adds at most three vertices: the one on the axis, a corner and the load point.
+# A step adds at most three vertices: one on the axis, a corner and the load point.
 _VERTICES: Final = 3
 
 
@@ -43,16 +42,14 @@ class LoadPoints(NamedTuple):
     tangential: Array
     """Tangential coordinate, shape (n,)."""
     continues: Flags
-    """Steps that continue the straight line of the step before."""
-    load_step: Indices
-    """Load step that each belongs to."""
+    """True for steps that continue the straight line of the step before, shape (n,)."""
 
 
 class Polyline(NamedTuple):
     """Polyline from the axis to the load point."""
 
     vertices: Array
-    """Vertices, with the columns of `slip_layout`, shape (n, 5); none in separation."""
+    """Vertices, with the columns of `slip_layout`, shape (n, 4); none in separation."""
     normal: float
     """Normal coordinate of the load point, exactly as it was given; <= 0 in separation."""
     tangential: float
@@ -62,11 +59,6 @@ class Polyline(NamedTuple):
     def in_contact(self) -> bool:
         """True unless the bodies are separated."""
         return len(self.vertices) > 0
-
-    @property
-    def load_step(self) -> Indices:
-        """Load step that laid the segment below each vertex."""
-        return self.vertices[:, STEP].astype(np.intp)
 
 
 @dataclass(frozen=True)
@@ -130,13 +122,12 @@ def follow(start: Polyline, points: LoadPoints) -> tuple[VertexTree, Polyline]:
     A load point with a normal coordinate <= 0 separates the bodies and erases the memory.
     """
     path, held = np.array(points[:2]), as_tree(start)
-    steps = points.continues, np.ascontiguousarray(points.load_step)
     made, most = held.parent.size, held.parent.size + _VERTICES * points.normal.size
     number, parent = np.arange(most), np.empty(most, dtype=np.intp)
     vertices, top = np.empty((2, most)), np.empty(points.normal.size, dtype=np.intp)
     parent[:made], vertices[:, :made] = held.parent, held.vertices
     rows, stack = _stacked(start, top.size)
-    made = stack.run(path, *steps, number, parent, vertices, top)
+    made = stack.run(path, points.continues, number, parent, vertices, top)
     line = Polyline(_polyline_on(stack, rows), *path[:, -1].tolist())
     return VertexTree(parent[:made], vertices[:, :made], top, held.start, path), line
 
@@ -144,7 +135,7 @@ def follow(start: Polyline, points: LoadPoints) -> tuple[VertexTree, Polyline]:
 def moved(line: Polyline, normal: float, tangential: float) -> tuple[Polyline, int]:
     """Return the polyline after one straight step, and how many vertices it left unchanged."""
     rows, stack = _stacked(line, 1)
-    stack.move(normal, tangential, continues=False, load_step=0)
+    stack.move(normal, tangential, continues=False)
     return Polyline(_polyline_on(stack, rows), normal, tangential), stack.changed
 
 
@@ -153,7 +144,7 @@ def moved_each(vertices: Array, ends: Indices, path: Array) -> tuple[Array, Indi
 
     Parameters
     ----------
-    vertices : vertices of all polylines, one after another, shape (m, 5).
+    vertices : vertices of all polylines, one after another, shape (m, 4).
     ends : end of each polyline among them, shape (n,).
     path : normal and tangential coordinates before the step and after it, shape (4, n).
     """
@@ -186,27 +177,26 @@ def separated(normal: float, tangential: float) -> Polyline:
 def as_tree(line: Polyline, following: Polyline | None = None) -> VertexTree:
     """Return one polyline as a tree without branches, and the step to the following one."""
     count, path = len(line.vertices), np.array((following or line)[1:])[:, None]
-    vertices, chain = line.vertices[:, NORMAL:STEP].T, np.arange(-1, count, dtype=np.intp)
+    vertices, chain = line.vertices[:, NORMAL:].T, np.arange(-1, count, dtype=np.intp)
     return VertexTree(chain[:-1], vertices, chain[-1:], (count - 1, *line[1:]), path)
 
 
-def stacked(span: Array, slope: Array, load_step: Indices) -> Polyline:
+def stacked(span: Array, slope: Array) -> Polyline:
     """Return the polyline from the axis whose segments have the given lengths and slopes."""
     vertices = np.zeros((span.size + 1, COLUMNS))
     growth = span * (1 + slope), span * (1 - slope), span
     vertices[1:, : NORMAL + 1] = np.cumsum(growth, axis=1).T
-    vertices[1:, SLOPE], vertices[1:, STEP] = slope, load_step
+    vertices[1:, SLOPE] = slope
     forward, backward, normal = vertices[-1, : NORMAL + 1].tolist()
     return Polyline(read_only(vertices), normal, (forward - backward) / 2)
 
 
-def through(sums: Array, load_step: Sequence[int], normal: float, tangential: float) -> Polyline:
+def through(sums: Array, normal: float, tangential: float) -> Polyline:
     """Return the polyline through vertices to a load point, without a check.
 
     Parameters
     ----------
     sums : normal + anchor and normal - anchor, from the axis, shape (n, 2).
-    load_step : label of the segment above each vertex, shape (n,).
     normal, tangential : coordinates of the load point.
     """
     vertices = np.zeros((len(sums) + 1, COLUMNS))
@@ -216,7 +206,6 @@ def through(sums: Array, load_step: Sequence[int], normal: float, tangential: fl
     rise, fall = np.diff(vertices[:, :NORMAL], axis=0).T
     with np.errstate(invalid="ignore"):
         vertices[1:, SLOPE] = np.clip((rise - fall) / (rise + fall), -1.0, 1.0)
-    vertices[1:, STEP] = load_step
     return Polyline(vertices, normal, tangential)
 
 

@@ -12,10 +12,9 @@ from mdr_core import conditioning, normal, validity
 from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.elementwise import number
 from mdr_core.errors import InputError, Notice
-from mdr_core.history import load_path, nonlinear_steps, slip_memory
-from mdr_core.history.contact_state import ContactState, unloaded
+from mdr_core.history import load_path, slip_memory
+from mdr_core.history.contact_state import ContactState, Edge, unloaded
 from mdr_core.history.load_path import UNLOADED, SampledPath, SavedState
-from mdr_core.history.nonlinear_steps import ExtrapolatedResults
 from mdr_core.history.slip_memory import Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.materials import Material
@@ -35,7 +34,7 @@ class LoadHistory(validity.ContactResults):
     path: SampledPath
     e_star: float | Material
     """Effective modulus [pressure], or the material that has it."""
-    results: StepResults | ExtrapolatedResults
+    results: StepResults
     """Results of the tangential foundation in reduced units."""
     quantities: ClassVar[tuple[str, ...]] = (
         "step",
@@ -141,37 +140,33 @@ class LoadHistory(validity.ContactResults):
     @cached_property
     def state(self) -> ContactState:
         """State of the contact at the end of the history."""
-        steps, curved_segments = self.results, None
-        if isinstance(steps, ExtrapolatedResults):
-            curved_segments = steps.nonlinear.curved_segments(steps.finest.last)
-            steps = steps.finest
-        line, (part, at) = steps.last, steps.last_vertices
+        line, (vertices, last) = self.results.last, self.results.last_vertices
+        force = vertices.conjugate
         if self.path.over_forces:
-            line = self._over_depths(part.conjugate_step[at[1:]], line)
-        return replace(self.path.start, polyline=line, curved_segments=curved_segments)
+            line = self._over_depths(vertices.conjugate_step[last[1:]], line)
+            force = vertices.tree.normal
+        state = replace(self.path.start, polyline=line)
+        edges = np.array([vertices.coordinate, force, vertices.shear])[:, last]
+        state.known_edges.extend(Edge(*map(number, edge)) for edge in edges.T.tolist())
+        return state
 
     @property
     def final_state(self) -> dict[str, Any]:
         """State at the end, with which `solve` carries the history on; JSON can hold it."""
-        if isinstance(self.results, ExtrapolatedResults):
-            lines, arcs = [each.last for each, _ in self.results.sets], self.results.nonlinear.arcs
-        else:
-            lines, arcs = [self.results.last], None
         return SavedState(
             load_path.digest(self.path.start, self.path.normal_name, self.path.tangential_name),
             float(self.path.normal[-1]),
             float(self.path.tangential[-1]),
             float(self.dissipated_energy[-1]),
             str(self.regime[-1]),
-            [load_path.saved(each, arcs) for each in lines],
+            load_path.saved(self.results.last),
         )._asdict()
 
     def _over_depths(self, span: Array, line: Polyline) -> Polyline:
-        """Return a polyline over reduced forces as one over depths, with the same slopes."""
+        """Return the polyline over depths that has the slopes of a polyline over reduced forces."""
         if not line.in_contact:
             return slip_memory.separated(min(float(self.indentation_depth[-1]), 0.0), 0.0)
-        slope = slip_memory.as_tree(line).slope[1:]
-        return slip_memory.stacked(span, slope, line.load_step[1:])
+        return slip_memory.stacked(span, slip_memory.as_tree(line).slope[1:])
 
     @property
     def slip_fronts(self) -> Array:
@@ -186,23 +181,28 @@ class LoadHistory(validity.ContactResults):
     @property
     def error_estimate(self) -> float:
         """Bound on the error of each result, relative to its largest value in the history."""
-        rounding = (conditioning.OF_SUMS + self._condition_number) * self.normal.error_estimate
-        chords = self.results.error if isinstance(self.results, ExtrapolatedResults) else 0.0
-        return rounding + chords + self.rounding
+        of_sums = (conditioning.OF_SUMS + self._condition_number) * self.normal.error_estimate
+        return of_sums + self.rounding
 
     @property
     def rounding(self) -> float:
         """Relative rounding error of steps of the tangential load and of the slip front [1].
 
-        They have the rounding error of the larger one of both coordinates.
+        Both have the rounding error of the larger coordinate. The front decides the energy that the
+        path adds to the dissipated energy at its start.
         """
         normal, tangential = np.maximum(self.path.coordinates[0], 0.0), self.path.coordinates[1]
-        least, most = np.sort([normal.max(), np.abs(tangential).max()])
+        least, most = sorted([float(normal.max()), float(np.abs(tangential).max())])
         deeper, further = np.diff(normal), np.abs(np.diff(tangential))
-        travel = np.max(np.where(normal[1:] > 0, further - deeper, 0.0))
+        travel = float(np.max(np.where(normal[1:] > 0, further - deeper, 0.0)))
+        total, error = float(self.dissipated_energy[-1]), 0.0
+        if least > 0:
+            error = most / least
         # Loads that grow in the ratio of friction move the front by rounding errors alone.
-        sizes = least, travel if travel > ROUNDING * most else 0.0
-        return 2 * EPS * float(sum(most / size for size in sizes if size > 0))
+        if travel > ROUNDING * most and total > 0:
+            error += most / travel * (1 - self.path.begin.dissipated_energy / total)
+        # A normal coordinate that is converted has the rounding error of an inverse.
+        return error * (ROUNDING if self.path.mixed else 2 * EPS)
 
     @cached_property
     def _condition_number(self) -> float:
@@ -211,7 +211,7 @@ class LoadHistory(validity.ContactResults):
         if self.path.over_forces:
             return conditioning.of_forces(self.normal, np.abs(self.path.tangential), limit)
         loads = self.path.tangential, self.tangential_force, limit
-        return conditioning.of_sliding(*loads, lambda: self.dissipation)
+        return conditioning.of_sliding(*loads, lambda: float(self.dissipated_energy[-1]))
 
     @property
     def slips_from(self) -> Array:
@@ -239,13 +239,14 @@ def solve(
 ) -> LoadHistory:
     """Return the results of a load history that starts from the unloaded bodies.
 
-    The load varies linearly, in the prescribed quantities, from zero to the first point and from
-    each point to the next. If depths and displacements are prescribed, or normal and tangential
-    forces, every step is exact. A negative depth separates the bodies and erases the slip memory.
+    Between two samples both loads vary linearly: depth and displacement where a displacement is
+    prescribed, normal and tangential force where a tangential force is. Every such path is solved
+    exactly. A negative depth separates the bodies and erases the slip memory.
 
-    If depth and tangential force are prescribed, or normal force and displacement, steps on which
-    both change are replaced by chords, and results are extrapolated: their relative error is
-    mostly 1e-9 to 1e-7, and at most about 1e-5. `error_estimate` bounds it.
+    A depth with a tangential force, or a normal force with a displacement, is prescribed at the
+    samples. Where both change on a step, more samples follow the curve on which they vary linearly.
+    A step from zero load is one straight line, because under a tangential force there is no
+    equilibrium on the curve next to first contact.
 
     Source: mdr-5, Eqs. (5.4)-(5.9), (5.19)-(5.23), (5.71); notes, §10.
 
@@ -257,9 +258,9 @@ def solve(
     indentation_depth, normal_force : exactly one, the points [length], [force], shape (n,).
     tangential_displacement, tangential_force : exactly one, the points [length], [force] of either
         sign, shape (n,). One of the two may be a single value for all points.
-    samples_per_step : evenly spaced samples from each point to the next, >= 1.
-    initial_state : `final_state` of a history of the same contact and controls, which this one
-        carries on: a path in pieces has the results of the path as a whole.
+    samples_per_step : samples from each point to the next, evenly spaced in the normal load, >= 1.
+    initial_state : `final_state` of a history of this contact and these controls, to be carried on:
+        a path in pieces has the results of the path as a whole.
 
     Returns
     -------
@@ -268,8 +269,8 @@ def solve(
     Raises
     ------
     InputError : not exactly one of each pair, points that are not finite, a negative normal force,
-        a depth beyond the end of the profile, |F_x| > mu F_N anywhere on the path, or an initial
-        state that is none of this contact.
+        a depth beyond the end of the profile, |F_x| > mu F_N anywhere on the path, a tangential
+        force where the bodies touch or separate on a step, or an initial state of another contact.
 
     Examples
     --------
@@ -300,11 +301,7 @@ def solve(
             raise InputError(_BEGIN, not_negative("normal_force"))
     path = load_path.build(start, pressed, pushed, samples_per_step, begin)
     _require_solvable(path)
-    lines, _ = path.at_start
-    # Under a flat punch depth and force are proportional, so that every step is straight.
-    if len(lines) > 1 or (path.nonlinear.any() and not profile.has_no_partial_slip):
-        return LoadHistory(path, e_star, nonlinear_steps.results(path))
-    results = StepResults(path.moments, path.load_points, lines[0], begin.regime)
+    results = StepResults(path.moments, path.load_points, path.at_start, begin.regime)
     return LoadHistory(path, e_star, results)
 
 

@@ -54,7 +54,7 @@ class TractionVertices:
 
     @cached_property
     def conjugate_step(self) -> Array:
-        """Conjugate of each vertex above that of its parent."""
+        """Growth of the conjugate from the parent of each vertex."""
         tree, conjugate = self.tree, self.conjugate
         step = np.maximum(conjugate - conjugate[tree.parent], 0.0)
         short = np.flatnonzero(tree.span < SHORT * tree.normal)
@@ -70,7 +70,7 @@ class TractionVertices:
 
     @cached_property
     def anchor(self) -> Array:
-        """Anchor of each vertex above that of the axis, a depth [length]."""
+        """Growth of the anchor from the axis to each vertex, a depth [length]."""
         return self._summed(conjugate=self.moments.over_forces)
 
     def _summed(self, *, conjugate: bool) -> Array:

@@ -61,11 +61,9 @@ class Foundation:
         self.load, profile = load, load.profile
         self.friction = (1 if body == 2 else -1) * load.modulus / load.e_star
         """mu, with the sign of the traction on the body [1]."""
-        rate = [arc.rate if arc else 0.0 for arc in load.arcs] or np.zeros_like(load.slope)
-        self._anchors = self.friction * np.array([load.slope, rate])
-        self._inverse = any(arc and arc.inverse for arc in load.arcs)
+        self._slope = self.friction * load.slope
         # Least radius at which q_x has a slope, infinite if it has none.
-        self.slips_from = load.radius[:-1][self._anchors.any(axis=0)].min(initial=inf)
+        self.slips_from = load.radius[:-1][load.slope != 0].min(initial=inf)
         self.sheared = bool(self.slips_from < inf)
         self.loaded = bool(load.coordinate[-1] > 0)
         # The kernel 1/rho^3 is a double.
@@ -78,8 +76,8 @@ class Foundation:
         if profile.has_no_partial_slip:
             # The slope of g is a single step at the contact radius.
             a, zero = load.radius[-1:], np.zeros((1, 1))
-            mass = load.coordinate[-1:] + 1j * self._anchors[:1] * load.width
-            self._levels = [_Blocks(a, a, zero[0], zero, a[:, None], mass)]
+            mass = load.coordinate[-1:] + 1j * self._slope * load.width
+            self._levels = [_Blocks(a, a, zero[0], zero, a[:, None], mass[:, None])]
         elif self.loaded:
             self._levels = [self._pieces()]
             while self._levels[-1].low.size > 1:
@@ -115,20 +113,19 @@ class Foundation:
 
     def _cuts(self, branch: Branch) -> list[float]:
         """Radii between which k g' of a branch is smooth."""
-        base, curved, profile = branch.base, bool(self._anchors[1].any()), self.load.profile
+        base, profile = branch.base, self.load.profile
         start, stop = max(base, branch.start), min(branch.stop, self.load.radius[-1])
         smooth = min(branch.stop, branch.pole) < inf or isinstance(profile, Cone | Paraboloid)
-        first = inf if smooth and not curved else EPS * stop
+        first = inf if smooth else EPS * stop
         near = min(base, branch.opposite_singularity) or first
-        return branch.cuts(start, stop, near, min(1.0, STEEP / (branch.steepness + curved)))
+        return branch.cuts(start, stop, near, min(1.0, STEEP / branch.steepness))
 
     def _slopes(self, x: Array, s: Array, index: Chosen) -> Numbers:
         """(1 + i k) dg/ds at nodes x, s (nodes, m) of the pieces `index` (m,)."""
         found = self.load.profile.branch_weights(x, s, self._owner[index])
         if not self.sheared:
             return found
-        slope, rate = self._anchors[:, self._part[index]]
-        return found * (1 + 1j * (slope + rate * (0.5 / x if self._inverse else 2 * x)))
+        return found * (1 + 1j * self._slope[self._part[index]])
 
     def moments(self, r: Array, z: Array) -> Numbers:
         """Return the moments of q + i q_x at points, z > 0, shape (7, m)."""

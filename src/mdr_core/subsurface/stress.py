@@ -145,7 +145,7 @@ def on_rings(under: Foundation, place: Rings, nu: float) -> StressTensor:
     origin = (z == 0) & (r == 0) & ~infinite
     if origin.any() and not load.profile.has_no_partial_slip:
         # Powers next to a cone approach the tractions there slowly. Om_r/r is a half of V_z.
-        whole = load._replace(slope=np.ones_like(load.slope), arcs=())
+        whole = load._replace(slope=np.ones_like(load.slope))
         p, tau = (each.stress(np.zeros(1)) for each in (whole, load))
         moments[:, origin], moments[0, origin] = 0.0, -np.pi * (p + 1j * under.friction * tau)
         moments[4, origin] = moments[0, origin] / 2
@@ -190,6 +190,6 @@ def error_estimate(contact: Contact, x: ArrayLike, y: ArrayLike, z: ArrayLike) -
         return MOMENT_ERROR + rim_error(known, away) + 4 * contact.error_estimate
     for i, at in enumerate(known.radius):
         edge = Edges(*(part[i : i + 1] for part in known))
-        near = max(near, error_near(edge, at + np.hypot(r - at, z), root=True))
-    own = 0.0 if isinstance(contact, ContactState) else 4 * contact.error_estimate
+        near = max(near, error_near(edge, at - np.hypot(r - at, z), root=True))
+    own = 0.0 if isinstance(contact, ContactState) else 4 * fields.own_error(contact)
     return MOMENT_ERROR + own + near

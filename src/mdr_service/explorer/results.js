@@ -223,15 +223,17 @@ export async function solveCycle(inputs, query) {
   const history = {
     normal: { [inputs.normal]: points.map(([normal]) => normal) },
     tangential: { [inputs.tangential]: points.map(([, tangential]) => tangential) },
+    samples_per_step: SAMPLES_PER_STEP,
   };
   const body = { ...basics(inputs), friction_coefficient: inputs.mu, history };
-  const sampled = { ...body, history: { ...history, samples_per_step: SAMPLES_PER_STEP } };
   const [path, field] = await Promise.all([
-    query("History", "v1/tangential/history", sampled),
+    query("History", "v1/tangential/history", body),
     fieldsOf(query, "Fields at the end", body, ["pressure", "shear_stress", "slip"]),
   ]);
   const end = single(path, -1);
-  const edges = [...path.slip_fronts.map((r) => ["", r]), ["a", end.contact_radius]];
+  // A straight step leaves one front at most; more of them belong to the samples of a curve.
+  const fronts = path.slip_fronts.length > points.length ? [] : path.slip_fronts;
+  const edges = [...fronts.map((r) => ["", r]), ["a", end.contact_radius]];
   const position = path.step.map((_, i) => (i + 1) / SAMPLES_PER_STEP);
   const surface = end.contact_radius > 0
     ? [await surfaceStress(query, inputs, body, end.contact_radius, edges)]

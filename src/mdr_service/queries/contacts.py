@@ -185,15 +185,18 @@ def response(
     InputError : a value overflows.
     DefectError : a value is not a number.
     """
-    error = source.error_estimate if error is None else error
     found = [*source.warnings, *validity.notices(yields(query, source))]
     if not isinstance(query, NormalQuery):
         # Other responses hold no scalar that is singular; their fields have warnings of their own.
         found = [notice for notice in found if notice.code != "singular"]
     found += warnings
-    if source.error_estimate <= ACCURACY < error:
-        # The source does not depend on the error of fields.
-        found.append(inaccurate(error))
+    if error is None:
+        error = source.error_estimate
+    else:
+        # The source warns of its own error, not of the error of fields.
+        found = [notice for notice in found if notice.code != "accuracy"]
+        if error > ACCURACY:
+            found.append(inaccurate(error))
     known = np.ravel(source.model_error)
     about = {
         "method": method or source.method,

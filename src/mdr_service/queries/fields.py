@@ -8,7 +8,7 @@ from mdr_core import fields
 from mdr_core import normal as normal_contact
 from mdr_core.elementwise import broadcast
 from mdr_core.errors import InputError
-from mdr_core.history import ContactState, LoadHistory
+from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
@@ -77,7 +77,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     radii = map(float, contact.profile.infinite_pressure_radii)
     at_singular = np.isin(radius, [0.0, *radii, *edges])
     infinite: dict[str, Flags] = dict.fromkeys(("pressure", "shear_stress"), at_singular)
-    method = _method(source, contact, query.quantities)
+    method = _method(contact, query.quantities)
     # The errors of the edges and of the integrals add up.
     integrated = 0.0 if method == "closed_form" else TIGHTEST
     at_edges = max(
@@ -90,7 +90,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         {"radius": radius} | values,
         infinite=infinite,
         method=method,
-        error=max(source.error_estimate, integrated) + at_edges,
+        error=max(fields.own_error(source), integrated) + at_edges,
         warnings=singular(radius, values, infinite),
     )
 
@@ -141,10 +141,7 @@ def _require_consistent(query: StressQuery) -> None:
     require_few_numbers(query)
 
 
-def _method(source: Contact, contact: NormalContact, names: list[Any]) -> str:
+def _method(contact: NormalContact, names: list[Any]) -> str:
     """Return the most expensive method of the fields."""
     closed = _FOUNDATION.union(contact.profile.closed_forms)
-    if isinstance(source, LoadHistory) and source.state.curved_segments:
-        # On nonlinear load paths shear fields are integrals.
-        closed -= SHEAR_FIELDS
     return contact.method if closed.issuperset(names) else "quadrature"

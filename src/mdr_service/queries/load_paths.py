@@ -23,10 +23,10 @@ from mdr_service.settings import SETTINGS
 def solve_history(query: HistoryQuery) -> LoadHistory:
     """Follow a load path from first contact, and return samples along it.
 
-    The controls vary linearly from point to point. Paths of depths and displacements, and of
-    normal and tangential forces, are solved exactly. Where a depth changes with a tangential force,
-    or a normal force with a displacement, the path is replaced by chords: the error is mostly 1e-9
-    to 1e-7 and within `error_estimate`. A negative depth is a separation, which erases the slip
+    Between two samples both loads vary linearly: the displacement with the depth, or the tangential
+    force with the normal force. Every such path is solved exactly. Where a depth changes with a
+    tangential force, or a normal force with a displacement, more `samples_per_step` follow the
+    curve on which these vary linearly. A negative depth is a separation, which erases the slip
     memory. A tangential force beyond µ F_N, at a point or between points, has no equilibrium and is
     rejected.
 
@@ -58,7 +58,7 @@ def solve_path(query: HistoryQuery | LoadedQuery, **more: Any) -> LoadHistory:
             **control(given.normal),
             **control(given.tangential),
             **more,
-            samples_per_step=given.samples_per_step,
+            samples_per_step=given.per_step,
         )
     except InputError as error:
         first, *rest = error.path
@@ -82,6 +82,6 @@ def require_few_samples(query: HistoryQuery | LoadedQuery) -> None:
     path = query.path
     if path and path.samples > SETTINGS.max_length:
         name = "cycles" if query.has("cycles") else "history"
-        place = ("samples_per_step",) if path.samples_per_step > 1 else ()
+        place = ("samples_per_step",) if (path.samples_per_step or 1) > 1 else ()
         detail = f"the number of samples must not exceed {SETTINGS.max_length}"
         raise InputError((name, *place), detail)

@@ -98,7 +98,7 @@ def _result(query: WearQuery | EvolutionQuery, worn: Wear, unbounded: Flags) -> 
     """Return the result of a wear query, with its fields if it has radii."""
     values = by_load(worn, query.loads)
     radius = worn.grid(query.points) if query.points else np.array(query.radius or ())
-    warnings, error = list[Notice](), worn.error_estimate
+    warnings, error = list[Notice](), None
     infinite: dict[str, Any] = {"pressure": True}
     if worn.normal.profile.has_no_partial_slip:
         infinite |= dict.fromkeys(_PROFILES, True)
@@ -110,7 +110,7 @@ def _result(query: WearQuery | EvolutionQuery, worn: Wear, unbounded: Flags) -> 
         }
         warnings += singular(radius, bounded, infinite)
         if isinstance(worn, LimitingWear):
-            error += worn.field_error_estimate(radius, query.quantities)
+            error = worn.error_estimate + worn.field_error_estimate(radius, query.quantities)
         values |= {"radius": radius} | surface
     for name in _UNBOUNDED & values.keys():
         flags = unbounded[:, None] if np.ndim(values[name]) > 1 else unbounded

@@ -1,10 +1,11 @@
 """Requests about load histories: points of a load path, or identical cycles."""
 
 from abc import abstractmethod
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from mdr_core.controls import default_samples
 from mdr_service.schemas.contacts import Axes, Choice, Query, friction
 from mdr_service.schemas.quantities import (
     LARGEST,
@@ -21,8 +22,7 @@ from mdr_service.schemas.quantities import (
 from mdr_service.settings import SETTINGS
 
 Regime = Literal["no_contact", "stick", "partial_slip", "full_slip"]
-# Sums of a vertex, and the numbers of an arc.
-_Vertex = Annotated[list[float], Field(min_length=2, max_length=5)]
+_Vertex = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 
 class NormalPoints(Choice):
@@ -75,18 +75,22 @@ class TangentialAmplitude(Choice):
     )
 
 
-class LoadPath(Strict):
-    """Load steps, along which normal and tangential control vary linearly."""
-
-    normal: Choice
-    tangential: Choice
-    samples_per_step: int = quantity(
+def _samples_per_step(default: int | None, text: str = "") -> Any:
+    return quantity(
         "1",
-        "Number of samples per load step, evenly spaced in the controls, the last at its end",
-        default=1,
+        f"Number of samples per load step, even in the controls, the last at its end{text}",
+        default=default,
         ge=1,
         le=SETTINGS.max_length,
     )
+
+
+class LoadPath(Strict):
+    """Load steps between points of the normal and the tangential control."""
+
+    normal: Choice
+    tangential: Choice
+    samples_per_step: int
 
     @property
     @abstractmethod
@@ -94,15 +98,14 @@ class LoadPath(Strict):
         """Number of load steps."""
 
     @property
-    def samples(self) -> int:
-        """Number of samples."""
-        return self.steps * self.samples_per_step
+    def per_step(self) -> int:
+        """Number of samples on each load step."""
+        return self.samples_per_step
 
     @property
-    def nonlinear(self) -> bool:
-        """True for a depth with a tangential force, or a normal force with a displacement."""
-        force_prescribed = self.tangential.control == "tangential_force"
-        return force_prescribed == (self.normal.control == "indentation_depth")
+    def samples(self) -> int:
+        """Number of samples."""
+        return self.steps * self.per_step
 
     def place(self, axis: str, step: int) -> tuple[str | int, ...]:
         """Return the path from here to the value at the end of a load step, the last of fewer."""
@@ -118,6 +121,7 @@ class History(LoadPath):
     tangential: TangentialPoints = Field(
         description="Exactly one control: displacement or tangential force."
     )
+    samples_per_step: int = _samples_per_step(1)
 
     @property
     def steps(self) -> int:
@@ -137,10 +141,21 @@ class Cycles(LoadPath):
         description="Exactly one control: the amplitude of displacement or tangential force."
     )
     count: int = quantity("1", "Number of cycles", default=1, ge=1, le=SETTINGS.max_length)
+    samples_per_step: int = _samples_per_step(
+        None,
+        "; by default 20 where a depth and a tangential force, or a normal force and a "
+        "displacement, both oscillate, else 1",
+    )
 
     @property
     def steps(self) -> int:
         return 2 + 2 * self.count
+
+    @property
+    def per_step(self) -> int:
+        normal, tangential = self.normal, self.tangential
+        by_default = default_samples(normal.control, tangential.control, normal.amplitude)
+        return self.samples_per_step or by_default
 
 
 class HistoryState(Strict):
@@ -156,14 +171,10 @@ class HistoryState(Strict):
         "force*length", "Energy dissipated by slip since the start", ge=0, le=LARGEST**3
     )
     regime: Regime = Field(description="Slip regime of the last sample.")
-    polylines: list[list[_Vertex]] = Field(
+    polyline: list[_Vertex] = Field(
         description="Slip memory: the vertices of a polyline from the axis, without the load point "
         "[length], or [length²] under a tangential force: normal coordinate + anchor and normal "
-        "coordinate − anchor. Three polylines, with three numbers more on each arc, after steps "
-        "along which a depth and a tangential force, or a normal force and a displacement, both "
-        "change.",
-        min_length=1,
-        max_length=3,
+        "coordinate − anchor."
     )
 
 
@@ -176,8 +187,8 @@ class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles
     history: History = left_out("Arbitrary load path, given by its points.")
     cycles: Cycles = left_out("In place of `history`: identical cycles of the tangential load.")
     initial_state: HistoryState = left_out(
-        "`final_state` of the history that this one carries on, of the same contact and controls; "
-        "with `history` only."
+        "`final_state` of a history of this contact and these controls, which is carried on; with "
+        "`history` only."
     )
     return_state: bool = Field(default=False, description="Return `final_state`.")
 
@@ -193,5 +204,4 @@ class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles
     @property
     def numbers(self) -> int:
         """Number of values of the state, which takes time as others do."""
-        lines = self.initial_state.polylines if self.has("initial_state") else []
-        return sum(len(vertex) for line in lines for vertex in line)
+        return sum(map(len, self.initial_state.polyline)) if self.has("initial_state") else 0
