@@ -152,7 +152,8 @@ class _Rebound(NamedTuple):
         velocity, duration, impulse, dissipated = (
             one + (one - other) / 3 for one, other in zip(fine, coarse, strict=False)
         )
-        return _Rebound(velocity, duration, impulse, dissipated, bool(slides))
+        # Below its own error the energy may not become negative.
+        return _Rebound(velocity, duration, impulse, max(dissipated, 0.0), bool(slides))
 
 
 class _Scene(NamedTuple):

@@ -114,13 +114,10 @@ class SampledPath:
     @cached_property
     def tangential_loads(self) -> Array:
         """Displacement or tangential force at the start and at each sample, shape (n + 1,)."""
-        loads = _along(self.tangential_points, self.per_step)
-        if self.per_step > 1 and self.mixed:
-            rows, normal = (
-                each[1:].reshape(-1, self.per_step) for each in (loads, self.normal_coordinate)
-            )
-            straight = self._from_zero & (normal[:, -1] > 0)
-            rows[straight] = rows[straight, -1:] * (normal[straight] / normal[straight, -1:])
+        loads, n = _along(self.tangential_points, self.per_step), self.per_step
+        if self.starts_straight and self.normal_points[1] > 0:
+            normal = self.normal_coordinate[1 : n + 1]
+            loads[1 : n + 1] = loads[n] * (normal / normal[-1])
         return loads
 
     @property
@@ -154,9 +151,9 @@ class SampledPath:
         return are_of_different_pairs(self.normal_name, self.tangential_name)
 
     @property
-    def _from_zero(self) -> Flags:
-        """Load steps from zero load, which are straight as a whole, shape (m,)."""
-        return np.asarray((self.normal_points[:-1] == 0) & (self.tangential_points[:-1] == 0))
+    def starts_straight(self) -> bool:
+        """The samples of the first step lie on the straight line of its point from zero load."""
+        return self.mixed and self.per_step > 1 and self.begin is UNLOADED
 
     @property
     def _continues(self) -> Flags:
@@ -166,7 +163,9 @@ class SampledPath:
         if self.mixed:
             points = self.normal_points, self.tangential_points
             one, other = (np.diff(each) == 0 for each in points)
-            flags &= (one | other | self._from_zero)[:, None]
+            straight = one | other
+            straight[0] |= self.starts_straight
+            flags &= straight[:, None]
         return flags.ravel()
 
     @property

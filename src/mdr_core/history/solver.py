@@ -245,7 +245,7 @@ def solve(
 
     A depth with a tangential force, or a normal force with a displacement, is prescribed at the
     samples. Where both change on a step, more samples follow the curve on which they vary linearly.
-    A step from zero load is one straight line, because under a tangential force there is no
+    The first step is one straight line from zero load, because under a tangential force there is no
     equilibrium on the curve next to first contact.
 
     Source: mdr-5, Eqs. (5.4)-(5.9), (5.19)-(5.23), (5.71); notes, §10.
