@@ -1,4 +1,4 @@
-"""Pairs of controls of a load path, and the samples that it needs by default."""
+"""Samples that load steps need by default, by the names of their controls."""
 
 from typing import Final
 
@@ -7,21 +7,15 @@ from typing import Final
 _ON_CURVES: Final = 20
 
 
-def are_of_different_pairs(normal: str, tangential: str) -> bool:
-    """Return True for a depth with a tangential force, or a normal force with a displacement."""
-    return (normal == "normal_force") != (tangential == "tangential_force")
+def default_samples(normal: str, tangential: str) -> int:
+    """Return the samples of a load step on which both controls change.
 
-
-def default_samples(normal: str, tangential: str, normal_amplitude: float) -> int:
-    """Return the samples on each load step of cycles if their number is not given.
-
-    One sample is exact on straight steps. On curved steps, where controls of different pairs both
-    change, 20 samples follow the curve.
+    One sample is exact on the straight step of a depth with a displacement, or of a normal with a
+    tangential force. Controls of different pairs follow a curve.
 
     Parameters
     ----------
     normal, tangential : names of the controls, such as ``"normal_force"``.
-    normal_amplitude : amplitude of the normal control.
     """
-    curved = normal_amplitude > 0 and are_of_different_pairs(normal, tangential)
-    return _ON_CURVES if curved else 1
+    of_one_pair = (normal == "normal_force") == (tangential == "tangential_force")
+    return 1 if of_one_pair else _ON_CURVES

@@ -103,7 +103,7 @@ def cycles(
     if samples_per_step is None:
         normal = "indentation_depth" if normal_force is None else "normal_force"
         tangential = "tangential_displacement" if tangential_force is None else "tangential_force"
-        samples_per_step = default_samples(normal, tangential, normal_amplitude)
+        samples_per_step = default_samples(normal, tangential) if normal_amplitude else 1
     if mean is not None and not 0 <= normal_amplitude <= mean:
         raise InputError(("history", "normal", "amplitude"), "must lie between 0 and the mean")
     if count < 1:

@@ -15,7 +15,6 @@ from typing import Any, Final, NamedTuple, Self
 
 import numpy as np
 
-from mdr_core.controls import are_of_different_pairs
 from mdr_core.doubles import ROUNDING
 from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
@@ -148,7 +147,7 @@ class SampledPath:
     @property
     def mixed(self) -> bool:
         """The controls are of different pairs, so that the normal control is converted."""
-        return are_of_different_pairs(self.normal_name, self.tangential_name)
+        return self.over_forces == self.depth_prescribed
 
     @property
     def starts_straight(self) -> bool:

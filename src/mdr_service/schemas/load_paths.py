@@ -153,9 +153,9 @@ class Cycles(LoadPath):
 
     @property
     def per_step(self) -> int:
-        normal, tangential = self.normal, self.tangential
-        by_default = default_samples(normal.control, tangential.control, normal.amplitude)
-        return self.samples_per_step or by_default
+        if self.samples_per_step or not self.normal.amplitude:
+            return self.samples_per_step or 1
+        return default_samples(self.normal.control, self.tangential.control)
 
 
 class HistoryState(Strict):
