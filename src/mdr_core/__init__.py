@@ -24,6 +24,7 @@ from mdr_core import (
     normal,
     subsurface,
     tangential,
+    torsion,
     validity,
     wear,
 )
@@ -92,6 +93,7 @@ __all__ = [
     "read_table",
     "subsurface",
     "tangential",
+    "torsion",
     "validity",
     "wear",
 ]
