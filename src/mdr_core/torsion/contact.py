@@ -45,7 +45,7 @@ _Group = tuple[Profile, Array, Indices, Indices]
 _OF_DATA: Final = 20
 _TIP: Final = 1e-4
 # Rounding error of the curves over that of closed forms, twice the largest of 2,000 contacts.
-_OF_CURVES: Final = 4.0
+_OF_CURVES: Final = 10.0
 
 
 @dataclass(frozen=True, repr=False)
