@@ -194,6 +194,23 @@ def test_table_of_a_ball(points: int, rotation: float) -> None:
         assert getattr(found, name) == pytest.approx(getattr(ball, name), rel=allowed, abs=0)
 
 
+def test_noisy_tables_of_a_ball() -> None:
+    """`data_error` covers torques of given rotations, and the reverse, in most tables."""
+    r, covered = np.linspace(0, 0.2, 80), []
+    heights = 1 - np.sqrt(1 - r * r)
+    ball = normal.solve(Sphere(1.0), E_STAR, normal_force=1e-3)
+    truth = torsion.solve(ball, G, MU, rotation=[1e-3, 1e-2])
+    for seed in range(12):
+        noise = 1e-3 * heights[-1] * np.random.default_rng(seed).standard_normal(r.size)
+        table = normal.solve(Tabulated(r, heights + noise), E_STAR, normal_force=1e-3)
+        for load, other in (("rotation", "torque"), ("torque", "rotation")):
+            found = torsion.solve(table, G, MU, **{load: getattr(truth, load)})
+            error = abs(getattr(found, other) / getattr(truth, other) - 1)
+            assert found.data_error is not None
+            covered += (error <= found.data_error).tolist()
+    assert np.mean(covered) >= 0.8
+
+
 def test_bodies_give_the_shear_modulus() -> None:
     """1/G = 1/G1 + 1/G2, and the body's own G against a rigid one."""
     steel, rubber = Body(210e9, 0.3), Body(2e6, 0.5)

@@ -34,7 +34,7 @@ NEEDED: Final = (
     "without a tangential load or a load history"
 )
 # Values of ln(a/c) down to which curves are resolved, one after the other until they hold the load.
-_DEPTHS: Final = (1.0, 4.0, 16.0, DEEPEST)
+_DEPTHS: Final = (1.0, 2.0, 4.0, 8.0, 16.0, DEEPEST)
 # ln(a/x) at which int x^2 dg of g ~ x^(1/20) has converged.
 _CONVERGED: Final = DEEPEST / 2
 # Values for each break of the curve of one contact, which bound the size of arrays.
@@ -282,12 +282,13 @@ def _states(
         depth = float(np.log((profile.contact_radius(contacts)[place] / load).max()))
         curves = VirginCurves(profile, contacts, max(depth, _DEPTHS[0]))
         return curves.at_stick(load, width, place), load < 0
+    of_moment = name == "torque"
     for depth in _DEPTHS:
         curves = VirginCurves(profile, contacts, depth)
-        states, beyond = curves.at_load(load, place, of_moment=name == "torque")
+        beyond = load >= curves.tops(of_moment=of_moment)[-1, place]
         if not beyond.any():
             break
-    return states, beyond
+    return curves.at_load(load, place, of_moment=of_moment), beyond
 
 
 def _slip_width(contact: NormalContact, stick: Array) -> Array:

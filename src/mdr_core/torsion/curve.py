@@ -24,7 +24,7 @@ from mdr_core.doubles import EPS, TINY
 from mdr_core.inversion import invert
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import NODES, STEEP, composite_rule
-from mdr_core.typing import Array, Flags, Indices
+from mdr_core.typing import Array, Indices
 
 DEEPEST: Final = -float(np.log(EPS))
 """ln(a/c) beyond which a - c is a in double precision."""
@@ -182,8 +182,12 @@ class VirginCurves:
         moment, width = x**3 * rotation + 3 * area, width + self._width(along, at)
         return np.array([x, width, rotation, moment, work, slope / s])
 
-    def at_load(self, load: Array, contact: Indices, *, of_moment: bool) -> tuple[Array, Flags]:
-        """Return the states at which P, or the moment, has a value, and which are beyond the end.
+    def tops(self, *, of_moment: bool) -> Array:
+        """Return P or the moment at the tops of pieces and at the end, shape (pieces + 1, n)."""
+        return self._resolved[1] if of_moment else self._resolved[0][0]
+
+    def at_load(self, load: Array, contact: Indices, *, of_moment: bool) -> Array:
+        """Return the states at which P, or the moment, has a value; beyond the end, the end.
 
         Parameters
         ----------
@@ -193,9 +197,9 @@ class VirginCurves:
         Returns
         -------
         c, a - c [length], P(c) [1], moment c^3 P + 3 int_c^a y^2 P dy and work int_c^a y^2 P(y)
-        (P(c) - P(y)) dy [length^3], slope -dP/dc [1/length]; shape (6, k). Beyond the end, the end.
+        (P(c) - P(y)) dy [length^3], slope -dP/dc [1/length]; shape (6, k).
         """
-        tops = self._resolved[1] if of_moment else self._resolved[0][0]
+        tops = self.tops(of_moment=of_moment)
         rise = self._moment_gain if of_moment else self._gain
         at = np.minimum((tops[1:, contact] <= load).sum(axis=0), self._last[contact]), contact
         length, need, most = self.length[at], load - tops[at], tops[1:][at] - tops[at]
@@ -212,10 +216,13 @@ class VirginCurves:
         # Below the step of a flat punch all of it sticks.
         onset = tops[0, contact]
         state[2:4] *= np.where(load < onset, load / np.where(onset > 0, onset, 1.0), 1.0)
-        return state, load >= tops[-1, contact]
+        return state
 
     def at_stick(self, stick: Array, width: Array, contact: Indices) -> Array:
-        """Return the states of stick radii c and widths a - c, each accurate by itself."""
+        """Return the states of stick radii c and widths a - c, each accurate by itself.
+
+        Parameters and states: see `at_load`.
+        """
         tops, ends = self._resolved[0], self.place(self.length)[0][:, contact]
         at = np.minimum((ends >= stick).sum(axis=0), self._last[contact]), contact
         (x, s), base = self.place(0 * stick, at), self.base[at]
