@@ -270,6 +270,11 @@ PUNCH = normal.solve(FlatPunch(1.0), E_STAR, normal_force=1.0)
         (lambda: twist(BALL, stick_radius=[0.1, 2.0]), ("torsion", "stick_radius", 1), "between"),
         (lambda: twist(BALL, stick_radius=0.0), ("torsion", "stick_radius"), "without bound"),
         (lambda: twist(PUNCH, stick_radius=1.0), ("torsion", "stick_radius"), "flat punch"),
+        (
+            lambda: twist(normal.solve(Paraboloid(1.0), 1.0, contact_radius=1e-110), rotation=1.0),
+            ("load", "contact_radius"),
+            "double precision",
+        ),
         (lambda: twist(BALL, rotation=[0.1, np.inf]), ("torsion", "rotation", 1), "finite"),
         (lambda: twist(BALL, rotation=[0.1, 0.2, 0.3]), ("torsion", "rotation"), "shape"),
         (lambda: twist(BALL), ("torsion",), "exactly one"),

@@ -25,6 +25,7 @@ from mdr_core.validation import (
     only_one,
     require_finite,
     require_positive,
+    require_representable,
     require_type,
 )
 
@@ -38,7 +39,7 @@ _DEPTHS: Final = (1.0, 2.0, 4.0, 8.0, 16.0, DEEPEST)
 # ln(a/x) at which int x^2 dg of g ~ x^(1/20) has converged.
 _CONVERGED: Final = DEEPEST / 2
 # Values for each break of the curve of one contact, which bound the size of arrays.
-_VALUES: Final = 256
+_VALUES: Final = 512
 # A profile, n of its contacts, and the cases with the indices of their contacts.
 _Group = tuple[Profile, Array, Indices, Indices]
 # Points of the integrals over ln x of an error of the data, and x/a at the end of the second one.
@@ -206,6 +207,8 @@ def solve(
     name, given = only_one(("torsion",), dict(zip(CONTROLS, loads, strict=True)))
     require_finite(("torsion", name), given)
     shape = shape_of_loads(contact, ("torsion", name), given, modulus, friction_coefficient)
+    cube = contact.contact_radius * contact.contact_radius * contact.contact_radius
+    require_representable(("load", contact.control), contact.loaded, cube)
 
     def flat(value: Parameter) -> Array:
         return np.broadcast_to(value, shape).ravel()

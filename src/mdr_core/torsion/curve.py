@@ -172,6 +172,7 @@ class VirginCurves:
         return cube * gain + 3 * (weights * gains).sum(axis=0), cube * slope
 
     def _state(self, along: Array, at: tuple[Indices, Indices]) -> Array:
+        """States at places; see `at_load`."""
         tops, _, series = self._resolved
         (x, s), (gain, slope) = self.place(along, at), self._gain(along, at)
         rotation, width, area, work = tops[:, *at]
