@@ -220,7 +220,7 @@ def solve(
     width = flat(_slip_width(contact, given)) if name == "stick_radius" else 0 * signed
     units = 8 / (3 * np.pi) * friction * e_star, friction * (e_star / g) / (2 * np.pi), 1.0
     load = np.abs(signed) / units[CONTROLS.index(name)]
-    # Without a normal load nothing slips, or all of it.
+    # Without a normal load nothing resists a rotation.
     states, second, slides = np.zeros((6, load.size)), np.zeros(load.size), load > 0
     states[0], states[5] = a, 1.0
     for profile, contacts, cases, place in _groups(contact.profile, edge, shape):
