@@ -76,9 +76,11 @@ def test_further_twist_turns_the_stick_zone(kind: str, share: float) -> None:
     contact = pressed(kind)
     end = amplitude(contact, share)
     rise = integral(contact, "torsional_stiffness", end)
-    assert rise == pytest.approx(float(twist(contact, rotation=end).torque), rel=1e-9)
+    assert rise == pytest.approx(float(twist(contact, rotation=end).torque), rel=1e-9, abs=0)
     stiffness = 16 / 3 * G * contact.contact_radius**3
-    assert twist(contact, rotation=0.0).torsional_stiffness == pytest.approx(stiffness, rel=1e-14)
+    assert twist(contact, rotation=0.0).torsional_stiffness == pytest.approx(
+        stiffness, rel=1e-14, abs=0
+    )
 
 
 @pytest.mark.parametrize("share", [0.2, 0.9, 0.999])
@@ -115,7 +117,7 @@ def test_energy_of_a_cycle_is_the_area_of_its_loop(kind: str, share: float, load
     assert (np.diff(loop.torque[:9]) < 0).all()
     # Just after a reversal all of the contact sticks.
     first = np.diff(loop.torque[:2]) / np.diff(loop.rotation[:2])
-    assert first == pytest.approx(16 / 3 * G * contact.contact_radius**3, rel=0.2)
+    assert first == pytest.approx(16 / 3 * G * contact.contact_radius**3, rel=0.2, abs=0)
 
 
 def test_samples_of_a_loop_enclose_its_energy() -> None:
@@ -128,7 +130,7 @@ def test_samples_of_a_loop_enclose_its_energy() -> None:
         mean = down.integ()(1.0) - down.integ()(-1.0)
         # The mirrored way back has the opposite mean.
         area = -2 * mean * loop.rotation[0, case]
-        assert loop.energy_per_cycle[case] == pytest.approx(area, rel=1e-9)
+        assert loop.energy_per_cycle[case] == pytest.approx(area, rel=1e-9, abs=0)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -141,10 +143,10 @@ def test_torque_grows_towards_the_largest(kind: str) -> None:
     assert (np.diff(found.torque) >= -1e-13 * found.torque[-1]).all()
     assert (np.diff(found.stick_radius) <= 0).all()
     assert (np.diff(found.dissipated_energy) >= 0).all()
-    assert found.torque[-1] == pytest.approx(float(largest), rel=1e-13)
+    assert found.torque[-1] == pytest.approx(float(largest), rel=1e-13, abs=0)
     assert (found.torque <= largest * (1 + 1e-13)).all()
     assert found.torque[0] == pytest.approx(
-        float(16 / 3 * G * contact.contact_radius**3 * phi[0]), rel=1e-6
+        float(16 / 3 * G * contact.contact_radius**3 * phi[0]), rel=1e-6, abs=0
     )
 
 
@@ -155,7 +157,7 @@ def test_full_slip_dissipates_the_work_of_the_largest_torque() -> None:
     assert far.stick_radius.tolist() == far.torsional_stiffness.tolist() == [0.0] * 3
     np.testing.assert_array_equal(far.slip_width, contact.contact_radius)
     gain = far.dissipated_energy[1] - far.dissipated_energy[0]
-    assert gain == pytest.approx(100 * float(far.torque[0]), rel=1e-12)
+    assert gain == pytest.approx(100 * float(far.torque[0]), rel=1e-12, abs=0)
     assert far.torque[2] == -far.torque[1]
     # Where full slip begins, the energy is continuous.
     last = twist(contact, stick_radius=2.3e-16 * contact.contact_radius)
@@ -163,7 +165,7 @@ def test_full_slip_dissipates_the_work_of_the_largest_torque() -> None:
     assert last.regime == "partial_slip"
     assert beyond.regime == "full_slip"
     gain = float(beyond.dissipated_energy - last.dissipated_energy)
-    assert gain == pytest.approx(0.03 * float(last.rotation * last.torque), rel=1e-11)
+    assert gain == pytest.approx(0.03 * float(last.rotation * last.torque), rel=1e-11, abs=0)
 
 
 @pytest.mark.parametrize("load", ["torque", "rotation"])
@@ -234,7 +236,9 @@ def test_a_sweep_of_profiles_is_its_single_cases() -> None:
         alone = normal.solve(punch, float(modulus[case]), normal_force=0.3)
         one = torsion.solve(alone, G, MU, torque=torque)
         for name in ("rotation", "stick_radius", "dissipated_energy", "torsion_arm"):
-            assert getattr(many, name)[case] == pytest.approx(float(getattr(one, name)), rel=1e-12)
+            assert getattr(many, name)[case] == pytest.approx(
+                float(getattr(one, name)), rel=1e-12, abs=0
+            )
 
 
 def test_a_contact_without_load_slips_or_rests() -> None:
