@@ -42,8 +42,9 @@ _CONVERGED: Final = DEEPEST / 2
 _VALUES: Final = 512
 # A profile, n of its contacts, and the cases with the indices of their contacts.
 _Group = tuple[Profile, Array, Indices, Indices]
-# Points of the integrals over ln x of an error of the data, and x/a at the end of the second one.
+# Points of the integrals over ln x of an error of the data, which needs two digits.
 _OF_DATA: Final = 20
+# x/a from which int x^2 dg has those digits.
 _TIP: Final = 1e-4
 # Rounding error of the curves over that of closed forms, twice the largest of 2,000 contacts.
 _OF_CURVES: Final = 10.0
