@@ -1,4 +1,4 @@
-"""Draw the figures of chapter 5 with the public functions: `make figures`."""
+"""Draw the figures of chapter 5, and of torsion, with the public functions: `make figures`."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from mdr_core import fields, normal, tangential
+from mdr_core import fields, normal, tangential, torsion
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Cone, FlatPunch, Paraboloid, Power, Profile, RoundedPunch
 from mdr_core.tangential import TangentialContact
@@ -172,6 +172,25 @@ def limiting_profiles_of_wear(axes: Axes) -> None:
     axes.legend(loc="upper center", ncols=3)
 
 
+def torque_against_rotation(axes: Axes) -> None:
+    """Torque of a twist for four profiles, beside the torque of a constant patch radius."""
+    rotations = np.linspace(0.0, 0.5, POINTS)
+    for name, profile in SHAPES.items():
+        contact = normal_contact(profile)
+        limit = FRICTION * contact.normal_force
+        unit = limit / (G_STAR * EDGE**2)
+        twisted = torsion.solve(contact, G_STAR, FRICTION, rotation=rotations * unit)
+        color = "0.6" if name == "$n = 6$" else None
+        axes.plot(rotations, twisted.torque / (limit * EDGE), label=name, color=color)
+    patch = 3 * np.pi / 16
+    axes.plot([0, 0, rotations[-1]], [0, patch, patch], "k:", label="constant patch radius")
+    axes.set_xlim(-0.005, rotations[-1])
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel(r"$G a^2\, \varphi/(\mu F_N)$")
+    axes.set_ylabel(r"$M/(\mu F_N a)$")
+    axes.legend()
+
+
 FIGURES: Final[dict[str, Callable[[Axes], None]]] = {
     "5_2": stick_radius_of_powers,
     "5_3": displacement_of_powers,
@@ -181,6 +200,7 @@ FIGURES: Final[dict[str, Callable[[Axes], None]]] = {
     "5_8": pressure_of_the_rounded_punch,
     "5_9": shear_stress_of_the_rounded_punch,
     "5_12": limiting_profiles_of_wear,
+    "torsion": torque_against_rotation,
 }
 
 

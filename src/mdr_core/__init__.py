@@ -1,8 +1,8 @@
 """Contact mechanics of axisymmetric bodies by the method of dimensionality reduction.
 
 Pass a profile and a material to `normal.solve`, and the contact that it returns to
-`tangential.solve`, `fields`, `subsurface` or `wear`. `history` follows load paths and steps through
-time, `impact` returns the rebound. Use one consistent system of units.
+`tangential.solve`, `torsion.solve`, `fields`, `subsurface` or `wear`. `history` follows load paths
+and steps through time, `impact` returns the rebound. Use one consistent system of units.
 
 >>> import mdr_core as mdr
 >>> steel = mdr.Body(youngs_modulus=210e9, poissons_ratio=0.3)
@@ -24,6 +24,7 @@ from mdr_core import (
     normal,
     subsurface,
     tangential,
+    torsion,
     validity,
     wear,
 )
@@ -92,6 +93,7 @@ __all__ = [
     "read_table",
     "subsurface",
     "tangential",
+    "torsion",
     "validity",
     "wear",
 ]

@@ -45,9 +45,11 @@ class Material:
     body_thickness: float | None = None
     """Thickness of the more compliant body on a rigid base [length]; None for a half-space or, of a
     `Sphere`, a ball."""
+    shear_modulus: float | None = None
+    """G of a twist, 1/G = 1/G1 + 1/G2 [pressure]; None where it is not given."""
 
     def __post_init__(self) -> None:
-        for name in ("e_star", "g_star", "body_thickness"):
+        for name in ("e_star", "g_star", "body_thickness", "shear_modulus"):
             if (value := getattr(self, name)) is not None:
                 require_positive(("material", name), value)
 
@@ -78,6 +80,19 @@ def shear_modulus(g_star: _Number | Material | None) -> _Number | float:
     return value
 
 
+def twist_modulus(shear_modulus: _Number | Material | None) -> _Number | float:
+    """Return G of a twist [pressure], that of a material or the number itself.
+
+    Its value is not checked. Raises InputError if there is none: G* does not determine it.
+    """
+    value = shear_modulus.shear_modulus if isinstance(shear_modulus, Material) else shear_modulus
+    _require_both_bodies("shear_modulus", value)
+    if value is None:
+        detail = "is needed for a twist, 1/G = 1/G1 + 1/G2: give it, or bodies"
+        raise InputError(("material", "shear_modulus"), detail)
+    return value
+
+
 def _require_both_bodies(name: str, value: object) -> None:
     if isinstance(value, Body):
         detail = "depends on both bodies: combine them by from_bodies([body, other])"
@@ -89,8 +104,8 @@ def from_bodies(
 ) -> Material:
     """Return the effective moduli and Dundurs' beta of two bodies in contact.
 
-    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 and 1/G* = (2 - nu1)/(4 G1) + (2 - nu2)/(4 G2);
-    a rigid body's terms are dropped. Dundurs'
+    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 and 1/G* = (2 - nu1)/(4 G1) + (2 - nu2)/(4 G2), and
+    1/G = 1/G1 + 1/G2 of a twist; a rigid body's terms are dropped. Dundurs'
     beta = (m1 - m2) / (2 [(1 - nu1)/G1 + (1 - nu2)/G2]), m = (1 - 2 nu)/G, is zero exactly
     where the bodies are elastically similar, Eq. (5.3).
 
@@ -129,8 +144,10 @@ def from_bodies(
     normal = sum(compliances)
     share = compliances[0] / normal if isinstance(bodies[0], Body) else 0.0
     shear = sum((2 - body.poissons_ratio) / (4 * body.shear_modulus) for body in parts)
+    twist = sum(1 / body.shear_modulus for body in parts)
     ratios = tuple(body.poissons_ratio for body in parts)
-    return Material(1 / normal, 1 / shear, _dundurs_beta(bodies), ratios, share, body_thickness)
+    moduli = 1 / normal, 1 / shear, _dundurs_beta(bodies)
+    return Material(*moduli, ratios, share, body_thickness, 1 / twist)
 
 
 def _dundurs_beta(bodies: Sequence[Body | Literal["rigid"]]) -> float:

@@ -254,6 +254,21 @@ def solve(
     return contact
 
 
+def shape_of_loads(
+    contact: NormalContact, path: tuple[str, str], given: Array, *parameters: Parameter
+) -> tuple[int, ...]:
+    """Return the shape of loads that are added to a normal contact, with their parameters.
+
+    Raises InputError at the path if they do not agree with the normal loads.
+    """
+    try:
+        return common_shape(given, contact.coordinate, *parameters)
+    except ValueError:
+        normal = contact.coordinate.shape
+        detail = f"the shape {given.shape} does not agree with the normal loads, {normal}"
+        raise InputError(path, detail) from None
+
+
 def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> Array:
     """Contact coordinate of the edge under a load, with input and results checked."""
     require_positive(("material", "e_star"), e_star)

@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, equivalent_1d, stick_zone, validity
 from mdr_core.doubles import EPS, ROUNDING
-from mdr_core.elementwise import broadcast, common_shape, is_number, some, where
-from mdr_core.errors import InputError, Notice
+from mdr_core.elementwise import broadcast, is_number, some, where
+from mdr_core.errors import Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.interval_moments import interval_moments
 from mdr_core.materials import Material, shear_modulus
-from mdr_core.normal import NormalContact
+from mdr_core.normal import NormalContact, shape_of_loads
 from mdr_core.profiles import Profile
 from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
@@ -331,12 +331,7 @@ def solve(
     loads = (tangential_force, tangential_displacement, stick_radius)
     name, given = only_one(("tangential",), dict(zip(CONTROLS, loads, strict=True)))
     parameters = (g_star, friction_coefficient)
-    try:
-        shape = common_shape(given, contact.coordinate, *parameters)
-    except ValueError:
-        normal = contact.coordinate.shape
-        detail = f"the shape {given.shape} does not agree with the normal loads, {normal}"
-        raise InputError(("tangential", name), detail) from None
+    shape = shape_of_loads(contact, ("tangential", name), given, *parameters)
     edge, width, sign, full_slip, excess = stick_zone.solve(contact, *parameters, name, given)
     edge, width = broadcast(edge, shape), broadcast(width, shape)
     result = TangentialContact(

@@ -3,6 +3,7 @@
 from mdr_core.fields.normal import foundation_load, normal_displacement, pressure
 from mdr_core.fields.radii import edge_error, edges, graded, grid, own_error
 from mdr_core.fields.tangential import foundation_shear, shear_stress, slip
+from mdr_core.fields.torsional import torsional_stress
 
 __all__ = [
     "edge_error",
@@ -16,4 +17,5 @@ __all__ = [
     "pressure",
     "shear_stress",
     "slip",
+    "torsional_stress",
 ]

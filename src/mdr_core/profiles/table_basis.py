@@ -68,6 +68,17 @@ class TableFit:
             for unit, error in zip(units, errors, strict=True)
         )
 
+    def slope_spread(self, radius: Array) -> Array:
+        """Return possible deviations of g' at radii (m,) that the points leave open [1], (m, n)."""
+        x, (end, height) = radius / self.scale[0], self.scale
+        slopes = self.spread[0].derivative()(x).reshape(x.size, -1)
+        for b, jumps in self.spread_of_jumps:
+            for shape, jump in zip(
+                (TruncatedCone(b, 1.0), RoundedPunch(b, 1.0)), jumps, strict=True
+            ):
+                slopes = slopes + np.outer(shape.dg(x), jump)
+        return np.asarray(height / end * slopes)
+
 
 class TableBasis:
     """B-splines of the slope and the images of jumps at breaks, with their heights at the points.

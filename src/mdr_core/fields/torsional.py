@@ -1,0 +1,62 @@
+"""Shear stress of a twisted contact, over the radius."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mdr_core.abel.annulus import Annulus
+from mdr_core.abel.stress import stress_integral
+from mdr_core.fields.normal import by_load, fill, pressure
+from mdr_core.torsion import TorsionalContact
+from mdr_core.torsion.curve import VirginCurves
+from mdr_core.typing import Array
+from mdr_core.validation import require_type
+
+
+def torsional_stress(contact: TorsionalContact, radius: ArrayLike) -> Array:
+    """Return the circumferential shear stress tau(r) [pressure].
+
+    mu p(r) in the slip annulus, and in the stick zone (2 mu E* r/pi^2) int_c^a (-dP/dx)/sqrt(x^2 -
+    r^2) dx, the sum over the discs that turned. Positive in the direction of a positive torque,
+    zero outside the contact, and infinite at the edge of a flat punch.
+
+    Source: jaeger; notes, §16.
+
+    Parameters
+    ----------
+    contact : twisted contact of one profile, under any number of loads.
+    radius : radii [length], >= 0, shape (m,).
+
+    Returns
+    -------
+    Array of shape (loads, m), or (m,) if the load is a single number.
+
+    Raises
+    ------
+    InputError : a radius that is negative or not finite, or an array as a parameter of the profile.
+    """
+    require_type("contact", contact, TorsionalContact, "a contact from torsion.solve")
+    normal, profile, shape = contact.normal, contact.normal.profile, contact.rotation.shape
+    shear = contact.friction_coefficient * normal.e_star
+    columns = normal.coordinate, normal.contact_radius, contact.stick_radius, contact.slip_width
+    turned = 2 * np.pi * contact.shear_modulus / shear * np.abs(contact.rotation)
+    edge, a, c, width, rotation = by_load(profile, shape, *columns, turned)
+
+    def stuck(load: int, r: Array) -> Array:
+        """Stress over mu E* in the stick zone [1]."""
+        result, inside = np.zeros(r.shape), r < c[load]
+        if inside.any():
+            at, ends = r[inside], Annulus(*map(np.array, (a[load], width[load], c[load])))
+            depth = max(1.0, np.log(a[load] / c[load]))
+            curve = VirginCurves(profile, np.array(edge[load : load + 1]), depth)
+            # The disc of a flat punch turns first.
+            step = min(rotation[load], float(curve.step[0]) * np.pi / 2)
+            disc = step / np.sqrt((a[load] - at) * (a[load] + at))
+            others = stress_integral(curve.branches, ends, at) if width[load] > 0 else 0.0
+            result[inside] = 2 / np.pi**2 * at * (disc + others)
+        return result
+
+    size = np.broadcast_to(shear, shape)[..., None] * fill(shape, stuck, radius)
+    slips = np.atleast_1d(radius) >= contact.stick_radius[..., None]
+    friction = np.broadcast_to(contact.friction_coefficient, shape)[..., None]
+    whole = np.where(slips, friction * pressure(normal, radius), size)
+    return np.asarray(np.sign(contact.rotation)[..., None] * whole + 0.0)

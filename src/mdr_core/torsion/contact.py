@@ -1,0 +1,335 @@
+"""Twist of a contact about its axis, with slip, under a constant normal load."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import ellipkm1
+
+from mdr_core import conditioning, validity
+from mdr_core.doubles import EPS
+from mdr_core.elementwise import in_blocks, some, where
+from mdr_core.errors import InputError, Notice
+from mdr_core.materials import Material, twist_modulus
+from mdr_core.normal import NormalContact, shape_of_loads
+from mdr_core.profiles import Profile, Tabulated
+from mdr_core.quadrature import composite_rule
+from mdr_core.torsion.curve import DEEPEST, VirginCurves
+from mdr_core.typing import Array, Flags, Indices, Parameter
+from mdr_core.validation import (
+    extremes,
+    first_index,
+    only_one,
+    require_finite,
+    require_positive,
+    require_representable,
+    require_type,
+)
+
+CONTROLS: Final = ("torque", "rotation", "stick_radius")
+NEEDED: Final = (
+    "a contact from normal.solve, because a twist is exact under a constant normal load alone, "
+    "without a tangential load or a load history"
+)
+# Values of ln(a/c) down to which curves are resolved, one after the other until they hold the load.
+_DEPTHS: Final = (1.0, 2.0, 4.0, 8.0, 16.0, DEEPEST)
+# ln(a/x) at which int x^2 dg of g ~ x^(1/20) has converged.
+_CONVERGED: Final = DEEPEST / 2
+# Values for each break of the curve of one contact, which bound the size of arrays.
+_VALUES: Final = 512
+# A profile, n of its contacts, and the cases with the indices of their contacts.
+_Group = tuple[Profile, Array, Indices, Indices]
+# Points of the integrals over ln x of an error of the data, which needs two digits.
+_OF_DATA: Final = 20
+# x/a from which int x^2 dg has those digits.
+_TIP: Final = 1e-4
+# Rounding error of the curves over that of closed forms, twice the largest of 2,000 contacts.
+_OF_CURVES: Final = 10.0
+
+
+@dataclass(frozen=True, repr=False)
+class TorsionalContact(validity.ContactResults):
+    """Normal contact under a twist, at any number of pairs of loads.
+
+    Results are arrays over the broadcast loads.
+    """
+
+    normal: NormalContact
+    shear_modulus: Parameter
+    friction_coefficient: Parameter
+    second_moment: Array
+    """int x^2 dg over the contact [length^3]."""
+    torque: Array
+    """M [force length]."""
+    rotation: Array
+    """phi [radian]."""
+    stick_radius: Array
+    """c [length], zero in full slip."""
+    slip_width: Array
+    """a - c [length], without cancellation."""
+    torsional_stiffness: Array
+    """dM/dphi = (16/3) G c^3 on further twist [force length]."""
+    dissipated_energy: Array
+    """Energy dissipated by friction since the torque was zero [force length].
+
+    int (M dphi - phi dM), a quarter of the energy of a cycle of this amplitude.
+    """
+    regime: "np.ndarray[Any, np.dtype[np.str_]]"
+    """Regime: "stick", "partial_slip" or "full_slip"; see `solve`."""
+    error_estimates: Array
+    """Upper bound of the relative error of each case, rounding of its loads included [1]."""
+    quantities: ClassVar[tuple[str, ...]] = (
+        *("torque", "rotation", "stick_radius", "slip_width", "torsional_stiffness"),
+        *("dissipated_energy", "torsion_arm", "regime"),
+    )
+    method: ClassVar[str] = "quadrature"
+
+    def values(self) -> dict[str, Any]:
+        """Return the quantities by name, those of the normal contact among them."""
+        return self.normal.values() | super().values()
+
+    @property
+    def torsion_arm(self) -> Array:
+        """Largest torque over mu F_N, (pi/4) int x^2 dg/int x dg [length].
+
+        Its limit at zero load, pi b/4 on a flat of radius b.
+        """
+        loaded = self.normal.loaded
+        force = where(loaded, self.normal.normal_force / self.normal.e_star, 1.0)
+        limit = np.pi / 4 * self.normal.profile.first_radius
+        return where(loaded, np.pi / 2 * self.second_moment / force, limit)
+
+    @cached_property
+    def data_error(self) -> Array | None:
+        """Relative error of torque and rotation that the points of a table leave open [1].
+
+        An estimate, at given a and c: the larger one of P(c), which decides on the rotation, and of
+        int x^2 dg, which decides on the largest torque, beside that of the normal contact.
+        """
+        normal, profile, known = self.normal, self.normal.profile, self.normal.data_error
+        if known is None or not isinstance(profile, Tabulated):
+            return None
+        a = np.where(normal.loaded, normal.contact_radius, profile.scale) + 0 * self.rotation
+        c = np.where(self.slip_width > 0, np.maximum(self.stick_radius, EPS * a), a)
+        shares, weights = composite_rule(_OF_DATA)
+        errors = [known + 0 * a]
+        for end, power in ((c, 0), (_TIP * a, 3)):
+            ratio = (end / a)[..., None] ** shares
+            kernel = ratio**power if power else ellipkm1(np.square((end / a)[..., None] / ratio))
+            x, kernel = a[..., None] * ratio, weights * kernel
+            slopes = profile.fit.slope_spread(x.ravel()).reshape(*x.shape, -1)
+            possible = np.einsum("...n,...nq->...q", kernel, slopes)
+            whole = (kernel * profile.dg(x)).sum(axis=-1)
+            errors.append(np.sqrt(np.square(possible).sum(axis=-1)) / whole)
+        return np.where(normal.loaded, np.max(errors, axis=0), 0.0)[()]
+
+    @property
+    def g_star(self) -> float | None:
+        """G* of the bodies [pressure], by which the warnings tell dissimilar ones."""
+        return None if self.normal.material is None else self.normal.material.g_star
+
+    @property
+    def model_error(self) -> Array:
+        """Estimated relative error of the model in each case [1]: that of the normal contact."""
+        return self.normal.model_error + 0 * self.rotation
+
+    @property
+    def slips_from(self) -> Array:
+        """Least radius with slip [length]; infinite without."""
+        return np.where(self.slip_width > 0, self.stick_radius, np.inf)
+
+    @property
+    def error_estimate(self) -> float:
+        """Largest of `error_estimates` [1]."""
+        return extremes(self.error_estimates)[1]
+
+    @property
+    def warnings_without_bodies(self) -> tuple[Notice, ...]:
+        """Warnings that do not depend on the bodies."""
+        return self.normal.warnings_with(self.normal.rtol, self.error_estimate)
+
+
+def solve(
+    contact: NormalContact,
+    shear_modulus: Parameter | Material | None,
+    friction_coefficient: Parameter,
+    *,
+    torque: ArrayLike | None = None,
+    rotation: ArrayLike | None = None,
+    stick_radius: ArrayLike | None = None,
+) -> TorsionalContact:
+    """Return the twist of a normal contact about its axis, applied once.
+
+    With P(c) = int_c^a K(c/x) dg(x)/x and the complete elliptic integral K, for every profile
+    phi = mu E* P(c)/(2 pi G) and M = (8 mu E*/(3 pi)) [c^3 P(c) + 3 int_c^a y^2 P(y) dy], so that
+    dM = (16/3) G c^3 dphi. Slip spreads inwards from the edge, into a flat as well; a flat punch
+    sticks completely up to M = (2/3) mu F_N a. P grows without bound as c -> 0: no rotation reaches
+    the largest torque. Full slip is the state of rotations at which c is below the machine epsilon
+    times a: c is returned as zero there, and M is the largest torque in double precision.
+
+    Source: jaeger; lubkin; deresiewicz; notes, §16.
+
+    Parameters
+    ----------
+    contact : the normal contact, from `mdr_core.normal.solve`.
+    shear_modulus : G, 1/G = 1/G1 + 1/G2 [pressure], > 0, or the material that has it.
+    friction_coefficient : mu > 0 [1].
+    torque, rotation, stick_radius : exactly one; the first two of either sign [force length],
+        [radian], [length]. Arrays broadcast with the normal loads.
+
+    Raises
+    ------
+    InputError : a torque that is the largest one, mu F_N times `torsion_arm`, within its rounding
+        error, or more, without equilibrium; a stick radius outside the contact or below the machine
+        epsilon times its radius; an adhesive contact; not exactly one load; parameters that are not
+        positive.
+
+    Examples
+    --------
+    The largest torque on a ball is 3 pi mu F_N a/16.
+
+    >>> from mdr_core import normal
+    >>> from mdr_core.profiles import Paraboloid
+    >>> contact = normal.solve(Paraboloid(0.01), 1.1e11, normal_force=10.0)
+    >>> twist = solve(contact, 4e10, 0.3, stick_radius=contact.contact_radius / 2)
+    >>> round(float(twist.torsion_arm / contact.contact_radius * 16 / np.pi), 12)
+    3.0
+    >>> round(float(twist.torque / (0.3 * 10.0 * twist.torsion_arm)), 9)
+    0.897338429
+    """
+    require_type("contact", contact, NormalContact, NEEDED)
+    modulus = twist_modulus(shear_modulus)
+    require_positive(("material", "shear_modulus"), modulus)
+    require_positive(("friction_coefficient",), friction_coefficient)
+    loads = (torque, rotation, stick_radius)
+    name, given = only_one(("torsion",), dict(zip(CONTROLS, loads, strict=True)))
+    require_finite(("torsion", name), given)
+    shape = shape_of_loads(contact, ("torsion", name), given, modulus, friction_coefficient)
+    cube = contact.contact_radius * contact.contact_radius * contact.contact_radius
+    require_representable(("load", contact.control), contact.loaded, cube)
+
+    def flat(value: Parameter) -> Array:
+        return np.broadcast_to(value, shape).ravel()
+
+    parts = contact.e_star, modulus, friction_coefficient
+    signed, edge, a, e_star, g, friction = map(
+        flat, (given, contact.coordinate, contact.contact_radius, *parts)
+    )
+    width = flat(_slip_width(contact, given)) if name == "stick_radius" else 0 * signed
+    units = 8 / (3 * np.pi) * friction * e_star, friction * (e_star / g) / (2 * np.pi), 1.0
+    load = np.abs(signed) / units[CONTROLS.index(name)]
+    # Without a normal load nothing resists a rotation.
+    states, second, slides = np.zeros((6, load.size)), np.zeros(load.size), load > 0
+    states[0], states[5] = a, 1.0
+    for profile, contacts, cases, place in _groups(contact.profile, edge, shape):
+        second[cases] = VirginCurves(profile, contacts, _CONVERGED).second_moment[place]
+        own = load[cases], width[cases], place
+        states[:, cases], slides[cases] = _states(profile, contacts, name, *own)
+    largest = 3 / 16 * np.pi**2 * second
+    error, of_edge = _OF_CURVES * flat(contact.error_estimates), conditioning.of_edge_slope(contact)
+    if name == "torque":
+        # Next to the largest torque its rounding error decides on c.
+        detail = (
+            "no equilibrium: the torque reaches the largest one, friction_coefficient x "
+            "normal_force x torsion_arm; reduce it, or prescribe rotation"
+        )
+        _reject(name, given, (load > 0) & (load >= largest * (1 - 4 * error)), detail)
+    elif name == "stick_radius":
+        of_edge = contact.edge_errors * conditioning.narrow_annulus(edge, width).reshape(shape)
+    slides &= name == "rotation"
+    # In full slip friction dissipates the work of the largest torque.
+    states[4] += np.where(slides, largest * (load - states[2]) / 3, 0.0)
+    states[:4] = np.where(slides, (0 * a, a, load, largest), states[:4])
+    c, width, turned, moment, work, _ = states
+    results: dict[str, Any] = {
+        "torque": np.copysign(units[0] * moment, signed),
+        "rotation": np.copysign(units[1] * turned, signed),
+        "stick_radius": c,
+        "slip_width": width,
+        "torsional_stiffness": 16 / 3 * g * c**3,
+        "dissipated_energy": 3 * units[0] * units[1] * work,
+        "regime": np.where(slides, "full_slip", np.where(width > 0, "partial_slip", "stick")),
+        "error_estimates": error * _condition(name, states, slides) + flat(of_edge),
+        "second_moment": second,
+    }
+    # The prescribed load is returned bit-identical.
+    results = {key: value.reshape(shape)[()] for key, value in (results | {name: signed}).items()}
+    return TorsionalContact(contact, modulus, friction_coefficient, **results)
+
+
+def _groups(profile: Profile, edge: Array, shape: tuple[int, ...]) -> Iterator[_Group]:
+    """Loaded cases in groups of contacts with one profile; equal contacts are one."""
+    loaded = np.flatnonzero(edge > 0)
+    if profile.swept:
+        names = profile.parameters
+        columns = [np.broadcast_to(value, shape).ravel() for value in names.values()]
+        for case in loaded:
+            own = dict(zip(names, (float(column[case]) for column in columns), strict=True))
+            alone = np.array([case]), np.array([0])
+            yield profile.with_parameters(own), edge[alone[0]], *alone
+        return
+    contacts, place = np.unique(edge[loaded], return_inverse=True)
+    order = np.argsort(place, kind="stable")
+    for block in in_blocks(contacts.size, _VALUES * (1 + profile.coordinate_breaks.size)):
+        cases = order[slice(*np.searchsorted(place[order], (block.start, block.stop)))]
+        yield profile, contacts[block], loaded[cases], place[cases] - block.start
+
+
+def _states(
+    profile: Profile, contacts: Array, name: str, load: Array, width: Array, place: Indices
+) -> tuple[Array, Flags]:
+    """States under the loads, and whether a load is beyond the deepest curve."""
+    if name == "stick_radius":
+        depth = float(np.log((profile.contact_radius(contacts)[place] / load).max()))
+        curves = VirginCurves(profile, contacts, max(depth, _DEPTHS[0]))
+        return curves.at_stick(load, width, place), load < 0
+    of_moment = name == "torque"
+    for depth in _DEPTHS:
+        curves = VirginCurves(profile, contacts, depth)
+        beyond = load >= curves.tops(of_moment=of_moment)[-1, place]
+        if not beyond.any():
+            break
+    return curves.at_load(load, place, of_moment=of_moment), beyond
+
+
+def _slip_width(contact: NormalContact, stick: Array) -> Array:
+    """a - c of prescribed stick radii [length]; InputError if there is no such contact."""
+    a, profile = contact.contact_radius, contact.profile
+    outside = (stick > a) | (stick < EPS * a) | ((stick < a) & ~contact.loaded)
+    detail = (
+        "must lie between 2.2e-16 times the contact radius and the contact radius: as it falls to "
+        "zero, the rotation grows without bound"
+    )
+    _reject("stick_radius", stick, outside, detail)
+    if profile.has_no_partial_slip:
+        detail = "a flat punch sticks up to a finite rotation: prescribe torque or rotation"
+        _reject("stick_radius", stick, (stick == a) & contact.loaded, detail)
+    if contact.control == "contact_radius" or profile.has_no_partial_slip:
+        return a - stick
+    # The coordinate of an edge that follows from a load is accurate, its radius may not be.
+    past = np.maximum(contact.coordinate - (stick - profile.first_radius), 0.0)
+    return np.where(stick < a, past, 0.0)
+
+
+def _reject(name: str, given: Array, bad: Flags, detail: str) -> None:
+    if some(bad):
+        index = first_index(np.asarray(bad)) if given.ndim else ()
+        raise InputError(("torsion", name, *index), detail, bad)
+
+
+def _condition(name: str, states: Array, slides: Flags) -> Array:
+    """Bound on the relative change of results by a small one of the prescribed load.
+
+    The load decides on P, and with it on c, a - c, the other load and the work.
+    """
+    c, width, rotation, moment, _, slope = states
+    if name == "stick_radius":
+        return np.ones_like(c)
+    with np.errstate(all="ignore"):
+        change = rotation if name == "rotation" else moment / c**3
+        worst = 3 * change / np.minimum(rotation, slope * np.minimum(c, width))
+    slips = (width > 0) & ~slides & (worst > 1) & (worst < np.inf)
+    return np.where(slips, worst, 1.0)
