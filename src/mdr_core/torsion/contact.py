@@ -87,9 +87,9 @@ class TorsionalContact(validity.ContactResults):
     )
     method: ClassVar[str] = "quadrature"
 
-    def values(self) -> dict[str, Any]:
-        """Return the quantities by name, those of the normal contact among them."""
-        return self.normal.values() | super().values()
+    def computed(self) -> dict[str, Any]:
+        """Return the quantities by name, with the quantities of the normal contact."""
+        return self.normal.computed() | super().computed()
 
     @property
     def torsion_arm(self) -> Array:
@@ -131,9 +131,9 @@ class TorsionalContact(validity.ContactResults):
         """G* of the bodies [pressure], by which the warnings tell dissimilar ones."""
         return None if self.normal.material is None else self.normal.material.g_star
 
-    @property
+    @cached_property
     def model_error(self) -> Array:
-        """Estimated relative error of the model in each case [1]: that of the normal contact."""
+        """Estimated relative error of the model in each case [1], as of the normal contact."""
         return self.normal.model_error + 0 * self.rotation
 
     @property
@@ -149,7 +149,7 @@ class TorsionalContact(validity.ContactResults):
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        return self.normal.warnings_with(self.normal.rtol, self.error_estimate)
+        return self.normal.warnings_with(self.error_estimate)
 
 
 def solve(
