@@ -30,7 +30,7 @@ def test_first_visit_shows_results_and_charts(visit: Visit) -> None:
     visit.page.locator("figure .plot .main-svg").first.wait_for()
     visit.page.locator("#accuracy").get_by_text("relative error").wait_for()
     assert visit.page.locator("figure").count() == 3
-    assert visit.number("Normal force") == "100 N"
+    assert visit.number("Normal force F_N") == "100 N"
 
 
 def test_head_links_are_served(address: str) -> None:
@@ -59,7 +59,7 @@ def test_every_profile_kind_is_drawn(visit: Visit) -> None:
     for kind in kinds:
         visit.open(f"?kind={kind}")
         assert visit.page.locator("#problem").is_hidden(), kind
-        assert visit.number("Normal force") == "100 N"
+        assert visit.number("Normal force F_N") == "100 N"
 
 
 def test_results_are_those_of_hertz(visit: Visit) -> None:
@@ -138,7 +138,7 @@ def test_latest_slider_position_is_drawn(visit: Visit) -> None:
     )
     visit.page.wait_for_url("**amount=0.9&**")
     visit.drawn()
-    assert visit.number("Tangential force") == "27 N"
+    assert visit.number("Tangential force F_x") == "27 N"
 
 
 def pasted(visit: Visit, text: str) -> None:
@@ -327,7 +327,7 @@ def test_phone_shows_the_main_numbers_while_any_slider_moves(visit: Visit) -> No
     visit.page.set_viewport_size({"width": 390, "height": 844})
     visit.open("?tab=push&kind=rounded_punch")
     numbers = visit.page.locator("#main-numbers")
-    assert numbers.locator("dt").all_inner_texts() == ["Stick radius c", "Tangential displacement"]
+    assert numbers.locator("dt").all_inner_texts() == ["Stick radius c", "Tangential displacement u_x"]
     sliders = visit.page.locator("#inputs [type=range]")
     assert sliders.count() == 9
     for slider in sliders.all():
@@ -422,13 +422,13 @@ def test_copy_works_without_a_clipboard_and_says_so(visit: Visit) -> None:
 
 def test_load_path_points_are_keyboard_accessible(visit: Visit) -> None:
     visit.open("?tab=cycle&path=100,0;100,20")
-    before = visit.number("Tangential force")
+    before = visit.number("Tangential force F_x")
     visit.page.locator("#editor circle").nth(1).focus()
     with visit.changing():
         visit.page.keyboard.press("ArrowLeft")
         visit.page.keyboard.press("ArrowLeft")
     assert before == "20 N"
-    assert float(visit.number("Tangential force").split()[0]) == pytest.approx(19, rel=1e-12, abs=0)
+    assert float(visit.number("Tangential force F_x").split()[0]) == pytest.approx(19, rel=1e-12, abs=0)
     visit.page.get_by_role("button", name="Remove point 2").click()
     visit.page.wait_for_url("**path=100,0&**")
 
@@ -443,9 +443,9 @@ def test_page_contents_can_be_downloaded(visit: Visit, tmp_path: Path) -> None:
         assert (tmp_path / name).read_bytes().startswith(start)
     first_columns = {
         "Response as CSV": "indentation_depth,",
-        "CSV of “Pressure”": '"Radius [mm]","pressure [MPa]"\n0,1370.8',
+        "CSV of “Pressure”": '"Radius r [mm]","pressure [MPa]"\n0,1370.8',
         "CSV of “Force against depth”": (
-            '"Indentation depth d [µm]","Normal force [N]",'
+            '"Indentation depth d [µm]","Normal force F_N [N]",'
             '"Indentation depth d [µm]","this load [N]"\n0,0,3.482'
         ),
     }

@@ -12,7 +12,8 @@ import pytest
 
 from tests.conftest import Client
 from tests.contract.forged_addresses import OFFERED, forged
-from tests.contract.javascript import evaluated
+from tests.contract.javascript import EXPLORER, evaluated
+from tests.contract.page_quantities import quantities
 
 TABLES = Path(__file__).parents[1] / "data" / "tables"
 EXPECTED = json.loads((TABLES / "expected.json").read_text("utf-8"))
@@ -66,6 +67,11 @@ def test_tables_that_cannot_be_read_are_refused_with_the_line() -> None:
     assert {file: table.get("error") for file, table in read(list(refused)).items()} == refused
 
 
+def test_labels_are_those_of_the_openapi_document(client: Client) -> None:
+    document = client.get("/openapi.json").json()
+    assert (EXPLORER / "quantities.js").read_text("utf-8") == quantities(document)
+
+
 STEEL = {"youngs_modulus": 2.1e11, "poissons_ratio": 0.3}
 SCAN = np.linspace(0, 6e-4, 25)
 # Query, body, and its error or last warning in the units of the page.
@@ -98,7 +104,7 @@ def test_deviations_of_a_table_are_heights(client: Client) -> None:
     page = {"ul": "mm", "ud": "nm", "uf": "N", "oscillation": "tangential_force"}
     (shown,) = evaluated("messages.js", "module.inWords(...call)", [[text, page, {}]])
     assert re.search(r"deviates by \S+ nm at radius \S+ mm, and by \S+ nm in the root", shown)
-    assert "see “error by the points”" in shown
+    assert "see “Error by the points of a table”" in shown
 
 
 def test_axis_of_a_worn_ball_is_found_in_any_window_about_it() -> None:
