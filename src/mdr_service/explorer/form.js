@@ -70,7 +70,7 @@ export function numberRow(field, inputs, reference, { change, fail }) {
   });
   text.addEventListener("input", () => {
     const value = read(text.value, dimension, inputs);
-    mark(element, Number.isNaN(value) ? noNumber(text.value) : "");
+    mark(element, Number.isNaN(value) ? noNumber(text.value, dimension) : "");
     if (Number.isNaN(value)) return fail(key);
     slider.value = to(value);
     tell(value);
@@ -83,13 +83,14 @@ export function numberRow(field, inputs, reference, { change, fail }) {
 export function optionalRow(field, inputs, { change, fail }) {
   const { key, dimension, label, list } = field;
   const [element, text] = textRow(key, label, unit(dimension, inputs).name);
-  const parts = inputs[key] === "" ? [] : String(inputs[key]).split(",");
-  text.value = parts.map((part) => shown(Number(part), dimension, inputs)).join(" ");
+  const held = inputs[key] === "" ? [] : String(inputs[key]).split(",");
+  text.value = held.map((part) => shown(Number(part), dimension, inputs)).join(" ");
   text.placeholder = field.placeholder;
   text.addEventListener("input", () => {
-    const values = text.value.split(/[\s;]+/).filter(Boolean).map((part) => read(part, dimension, inputs));
-    const wrong = values.some(Number.isNaN) || (!list && values.length > 1);
-    mark(element, wrong ? `not ${list ? "numbers with blanks between them" : "a number"}` : "");
+    const parts = list ? text.value.split(/,?\s+|;/).filter(Boolean) : text.value.trim() ? [text.value] : [];
+    const values = parts.map((part) => read(part, dimension, inputs));
+    const wrong = values.some(Number.isNaN);
+    mark(element, wrong ? (list ? "not numbers with blanks between them" : noNumber(text.value, dimension)) : "");
     if (wrong) return fail(key);
     change(key, list || values.length === 0 ? values.join(",") : values[0]);
   });

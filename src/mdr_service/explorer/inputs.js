@@ -14,11 +14,11 @@ const DEFAULTS = {
   kind: "paraboloid",
   e1: 2.1e11, nu1: 0.3, e2: 2.1e11, nu2: 0.3, thickness: "",
   control: "normal_force", load: 100, w: 0,
-  mu: 0.3, push: "ratio", amount: 0.7,
+  mu: 0.3, push: "ratio", shear: "none", amount: 0.7,
   normal: "normal_force", tangential: "tangential_force",
   path: "100,0;100,20;100,-20;100,20",
-  fitted: "contact_point", mass: 0.033, share: 0.286, approach: 0.1, along: 0.05,
-  body: 1, yield: 1.5e9,
+  fitted: "contact_point", mass: "", density: "", share: 2 / 7, approach: 0.1, along: 0.05,
+  body: 1, yield1: "", yield2: "",
   oscillation: "tangential_force", amplitude: 20, wear: 1e-13, cycles: 1e5,
   ul: "mm", ud: "µm", uf: "N", up: "MPa", um: "GPa",
 };
@@ -29,15 +29,16 @@ const FITTED = [POINT, OFFSET, ...[POINT, OFFSET].map((names) => `${names},work_
 // Input that is chosen -> its choices.
 const CHOICES = {
   tab: TABS, fitted: ["none", ...FITTED], kind: Object.keys(KINDS), push: ["ratio", ...TANGENTIAL],
+  shear: ["none", "ratio", ...TANGENTIAL],
   normal: NORMAL, tangential: TANGENTIAL, oscillation: TANGENTIAL, body: [1, 2],
   ...Object.fromEntries(Object.values(BASE_UNITS).map(({ key, factors }) => [key, Object.keys(factors)])),
 };
+const optional = (text) => (text === "" ? text : number(text));
 // Inputs that are lists of numbers, or that may be empty.
 const OTHERS = {
   path: (text) => (pathPoints({ path: text }).every(isPoint) ? text : undefined),
   breaks: (text) => (text === "" || text.split(",").every(isNumber) ? text : undefined),
-  uncertainty: (text) => (text === "" ? text : number(text)),
-  thickness: (text) => (text === "" ? text : number(text)),
+  uncertainty: optional, thickness: optional, mass: optional, density: optional, yield1: optional, yield2: optional,
   e1: (text) => (text === RIGID ? text : number(text)),
   e2: (text) => (text === RIGID ? text : number(text)),
 };

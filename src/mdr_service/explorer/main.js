@@ -4,7 +4,7 @@ import { draw, redraw } from "./charts.js";
 import { make, makeButton } from "./dom.js";
 import { choiceRow, mark, numberRow, optionalRow } from "./form.js";
 import { showEditor } from "./load_path.js";
-import { MATERIALS } from "./materials.js";
+import { MATERIALS, materialOf, strengthOf } from "./materials.js";
 import { inWords } from "./messages.js";
 import { bodyFields, loadFields, ANALYSES, BODIES, THICKNESS } from "./analyses.js";
 import { copied, download, fileName, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
@@ -69,6 +69,10 @@ function isUsed(key) {
 function change(key, value) {
   unreadable.delete(key);
   inputs = { ...inputs, [key]: value };
+  // Values that follow from the one that has changed.
+  for (const { key: other, optional, placeholder } of ANALYSES[inputs.tab].fields(inputs)) {
+    if (optional) $(`#field-${other}`).placeholder = placeholder;
+  }
   refresh();
 }
 
@@ -87,7 +91,7 @@ function choose(key, value) {
 function keepLoad(key, value) {
   const known = last?.known ?? {};
   if (key === "control" && known[value] > 0) inputs.load = known[value];
-  if (key === "push") {
+  if (key === "push" || key === "shear") {
     const share = known.tangential_force / (inputs.mu * known.normal_force);
     inputs.amount = value === "ratio" ? Math.min(share || 0.7, 1) : known[value] || inputs.load / 10;
   }
@@ -137,17 +141,26 @@ function profileFields() {
 
 function materialRow(i) {
   const [modulus, ratio] = [`e${i}`, `nu${i}`];
-  const current = [inputs[modulus], inputs[ratio]];
   const known = { ...MATERIALS, Rigid: [RIGID, inputs[ratio]] };
-  const custom = current[0] === RIGID ? MATERIALS.Steel : current;
-  const chosen = Object.keys(known).find((name) => String(known[name]) === String(current)) ?? "Custom";
+  // The moduli of the material that was chosen would be that material again.
+  const custom = [2e11, 0.3];
+  const chosen = inputs[modulus] === RIGID ? "Rigid" : materialOf(inputs, i) ?? "Custom";
   const choices = ["Custom", ...Object.keys(known)].map((name) => [name, name]);
   return choiceRow(`material-${i}`, BODIES[i], choices, chosen, (name) => {
     const [e, nu] = known[name] ?? custom;
-    // Stresses are those of an elastic body.
-    const body = e === RIGID && inputs.body === i ? 3 - i : inputs.body;
-    show({ ...inputs, body, [modulus]: e, [ratio]: nu });
+    // Strength and density are those of the material that is chosen.
+    const next = { ...inputs, [modulus]: e, [ratio]: nu, [`yield${i}`]: "", ...(i === 1 ? { density: "" } : {}) };
+    show({ ...next, body: weakest(next) });
   });
+}
+
+/** Return the elastic body of the lower yield strength, if both are known, else the one that is chosen. */
+function weakest(next) {
+  const rigid = [1, 2].find((i) => next[`e${i}`] === RIGID);
+  if (rigid) return 3 - rigid;
+  const [first, second] = [1, 2].map((i) => strengthOf(next, i));
+  if (first === undefined || second === undefined || first === second) return next.body;
+  return first < second ? 1 : 2;
 }
 
 function showForm() {
@@ -213,7 +226,7 @@ function showAccuracy(responses, notes) {
 // Member of a request -> keys of the inputs that set it.
 const SOURCES = {
   "/friction_coefficient": "mu", "/load": "load", "/tangential": "amount", "/oscillation": "amplitude",
-  "/wear_coefficient": "wear", "/cycles": "cycles", "/material/yield_strength": "yield", "/body": "body",
+  "/wear_coefficient": "wear", "/cycles": "cycles", "/body": "body",
   "/material/work_of_adhesion": "w", "/material/body_thickness": "thickness", "/body_thickness": "thickness",
   "/history": "path", "/normal_mass": "mass", "/tangential_mass": "share", "/normal_velocity": "approach",
   "/tangential_velocity": "along", "/indentation_depth": "curve", "/normal_force": "curve",
@@ -225,6 +238,7 @@ const SOURCES = {
 
 /** Return the key of the input that sets the member of a request at a pointer. */
 function keyOf(pointer) {
+  if (pointer === "/material/yield_strength") return `yield${inputs.body}`;
   const member = Object.keys(SOURCES).find((prefix) => `${pointer}/`.startsWith(prefix));
   if (member) return SOURCES[member];
   const [, , name, index, part] = pointer.split("/");

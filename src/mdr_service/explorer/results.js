@@ -1,9 +1,11 @@
 // The results of the analyses: requests, and the numbers and charts of their responses.
 
 import { basics, pathPoints } from "./inputs.js";
+import { massOf, strengthOf } from "./materials.js";
 import { QUANTITIES } from "./quantities.js";
+import { Refusal } from "./requests.js";
 import { inMetres, inSI } from "./shapes.js";
-import { quantity } from "./units.js";
+import { quantity, uncertain } from "./units.js";
 
 const POINTS = 400;
 const SAMPLES_PER_STEP = 40;
@@ -16,11 +18,12 @@ async function normalForce(inputs, query) {
   return (await query("Contact", "v1/normal", { ...basics(inputs), load })).normal_force[0];
 }
 
-/** Return the members of a request about a tangential load under a normal force. */
-function pushed(inputs, force) {
-  const tangential = inputs.push === "ratio"
+/** Return the members of a request about a tangential load, prescribed by `control`, under a normal force. */
+function pushed(inputs, force, control = inputs.push) {
+  if (control === "none") return { ...basics(inputs), load: { normal_force: force } };
+  const tangential = control === "ratio"
     ? { tangential_force: inputs.amount * inputs.mu * force }
-    : { [inputs.push]: inputs.amount };
+    : { [control]: inputs.amount };
   return { ...basics(inputs), load: { normal_force: force }, friction_coefficient: inputs.mu, tangential };
 }
 
@@ -154,7 +157,7 @@ async function solveAdhesive(inputs, query) {
 }
 
 export async function solvePress(inputs, query) {
-  if (inputs.w > 0) return solveAdhesive(inputs, query);
+  if (inputs.w !== 0) return solveAdhesive(inputs, query);
   const force = await normalForce(inputs, query);
   const forces = Array.from({ length: 60 }, (_, i) => force * ((i + 1) / 60) ** 2);
   const [curve, field] = await Promise.all([
@@ -268,9 +271,14 @@ export async function solveCycle(inputs, query) {
 }
 
 export async function solveImpact(inputs, query) {
+  const mass = massOf(inputs);
+  if (mass === undefined) {
+    const detail = "is needed: the shape or the material leaves it open";
+    throw new Refusal({ title: "Invalid request", errors: [{ pointer: "/normal_mass", detail }] });
+  }
   const body = {
     ...basics(inputs), friction_coefficient: inputs.mu,
-    normal_mass: inputs.mass, tangential_mass: inputs.share * inputs.mass, normal_velocity: inputs.approach,
+    normal_mass: mass, tangential_mass: inputs.share * mass, normal_velocity: inputs.approach,
   };
   // Beyond some twice this velocity every body slides throughout.
   const sliding = (2 * inputs.mu * inputs.approach) / inputs.share;
@@ -311,8 +319,10 @@ export async function solveImpact(inputs, query) {
 
 export async function solveStress(inputs, query) {
   const force = await normalForce(inputs, query);
-  const base = pushed(inputs, force);
-  const material = { ...base.material, yield_strength: inputs.yield };
+  const base = pushed(inputs, force, inputs.shear);
+  const strength = strengthOf(inputs, inputs.body);
+  const material = { ...base.material, ...(strength === undefined ? {} : { yield_strength: strength }) };
+  const sheared = inputs.shear === "none" ? [] : ["shear_stress"];
   const solved = query("Contact", "v1/normal", { ...basics(inputs), load: { normal_force: force } });
   const alongSurface = solved.then((contact) => {
     const radius = contact.contact_radius[0];
@@ -321,7 +331,7 @@ export async function solveStress(inputs, query) {
   const [contact, surface, field, map] = await Promise.all([
     solved,
     alongSurface,
-    fieldsOf(query, "Surface", base, ["pressure", "shear_stress", "normal_displacement"]),
+    fieldsOf(query, "Surface", base, ["pressure", ...sheared, "normal_displacement"]),
     query("Beneath", "v1/subsurface", {
       ...base, material, body: inputs.body, points: 61, quantities: ["von_mises"], largest: true,
     }),
@@ -330,16 +340,18 @@ export async function solveStress(inputs, query) {
   const [mises, shear] = [single(map.largest.von_mises), single(map.largest.maximum_shear)];
   const edges = [["a", now.contact_radius]];
   const displacement = [{ name: "displacement", y: field.normal_displacement[0] }];
+  const onset = (criterion) =>
+    map.yield_onset_force ? [map.yield_onset_force[criterion][0], "force"] : ["needs a yield strength"];
   return {
     responses: [contact, field, map, surface.response],
     known: now,
     numbers: [
       ["Largest von Mises stress", mises.value, "pressure"],
-      ["Yield begins at, von Mises", map.yield_onset_force.von_mises[0], "force"],
+      ["Yield begins at, von Mises", ...onset("von_mises")],
       ["Depth z of the largest stress", mises.z, "length"],
       ["x of the largest stress", mises.x, "length"],
       ["Largest shear stress", shear.value, "pressure"],
-      ["Yield begins at, Tresca", map.yield_onset_force.tresca[0], "force"],
+      ["Yield begins at, Tresca", ...onset("tresca")],
       ...surface.numbers,
       ...numbersOf(now, ["contact_radius"]),
     ],
@@ -354,7 +366,7 @@ export async function solveStress(inputs, query) {
         ],
       },
       pressureChart("Surface", field, edges),
-      shearStressChart("Surface", field, inputs.mu, edges),
+      ...sheared.map(() => shearStressChart("Surface", field, inputs.mu, edges)),
       surface.chart,
       fieldChart(
         "Surface", "Normal displacement of the surface", "normal_displacement", edges, field.radius, displacement,
@@ -378,7 +390,11 @@ export async function solveWear(inputs, query) {
   const { radius } = course;
   const limit = await query("Limit", "v1/wear", { ...body, radius });
   const [now, final] = [single(course, cycles.indexOf(inputs.cycles)), single(limit)];
-  const depth = (profile) => profile.map((f, i) => f - limit.initial_profile[i]);
+  // Unbounded wear has no limit, and outside a flat punch there is no profile.
+  const depth = (profile) => profile.map((f, i) => {
+    const unworn = limit.initial_profile[i];
+    return f === null || unworn === null ? NaN : f - unworn;
+  });
   const [stick, outer] = [now.stick_radius, now.contact_radius];
   const edges = [["c", stick], ["a", outer]];
   const width = outer - stick;
@@ -425,7 +441,7 @@ export async function solveFit(inputs, query) {
   const values = fit.map((name, i) => {
     const [label, dimension] = QUANTITIES[name];
     const [value, error] = [found[name][0], found.standard_errors[i]];
-    return [label, `${quantity(value, dimension, inputs)} ± ${quantity(error, dimension, inputs, 2)}`];
+    return [label, uncertain(value, error, dimension, inputs)];
   });
   // With adhesion some of the measured points are left out.
   const { indentation_depth: used } = found;
