@@ -10,30 +10,31 @@ import re
 import sys
 from typing import Any
 
-# Schema that describes a quantity first -> quantities of the page.
-DESCRIBED = {
-    "NormalAnswer": "indentation_depth normal_force contact_radius mean_pressure maximum_pressure"
-    " normal_stiffness elastic_energy pull_off_force pull_off_depth retraction data_error",
-    "TangentialAnswer": "tangential_force tangential_displacement stick_radius slip_width"
-    " tangential_stiffness dissipated_energy",
-    "StressAnswer": "radius pressure shear_stress slip normal_displacement",
-    "EvolutionAnswer": "profile worn_depth worn_volume cycles",
-    "TangentialQuery": "friction_coefficient",
-    "ImpactAnswer": "normal_velocity tangential_velocity normal_rebound_velocity"
-    " tangential_rebound_velocity duration maximum_indentation_depth maximum_normal_force",
-    "FitAnswer": "e_star contact_point force_offset work_of_adhesion",
-}
+# Schemas that describe the quantities, the first one of each.
+DESCRIBED = [
+    "NormalAnswer",
+    "TangentialAnswer",
+    "StressAnswer",
+    "SubsurfaceAnswer",
+    "EvolutionAnswer",
+    "WearAnswer",
+    "HistoryAnswer",
+    "ImpactAnswer",
+    "FitAnswer",
+    "TangentialQuery",
+]
+# Plain numbers that the page shows as quantities.
+NUMBERS = {"cycles", "data_error", "friction_coefficient"}
 # Dimensions whose unit the page chooses apart from the others of the wire.
 DISPLACEMENTS = re.compile(r"depth|displacement|retraction|slip$|profile|contact_point")
 OWN = {"e_star": "modulus", "work_of_adhesion": "N/m"}
 SHOWN = {
     "force*length": "energy", "force/length": "stiffness", "length^3": "volume",
-    "length/time": "m/s", "time": "s",
+    "length/time": "m/s", "time": "s", "force*time": "N·s",
 }  # fmt: skip
 
 
-def dimension(name: str, member: dict[str, Any]) -> str:
-    wire = member["x-dimension"]
+def dimension(name: str, wire: str) -> str:
     if wire == "length" and DISPLACEMENTS.search(name):
         return "displacement"
     return OWN.get(name) or SHOWN.get(wire, wire)
@@ -47,13 +48,15 @@ def quantities(document: dict[str, Any]) -> str:
         "",
         "export const QUANTITIES = {",
     ]
-    for schema, names in DESCRIBED.items():
-        members = document["components"]["schemas"][schema]["properties"]
-        for name in names.split():
-            label = re.split(r"[,;:]| ?\[", members[name]["description"])[0].replace("(r)", "")
-            row = json.dumps([label, dimension(name, members[name])], ensure_ascii=False)
-            lines.append(f"  {name}: {row},")
-    return "\n".join([*lines, "};", ""])
+    found: dict[str, list[str]] = {}
+    for schema in DESCRIBED:
+        for name, member in document["components"]["schemas"][schema]["properties"].items():
+            wire = member.get("x-dimension", "1")
+            if name not in found and (wire not in {"1", "as the parameter"} or name in NUMBERS):
+                label = re.split(r"[,;:]| ?\[", member["description"])[0].replace("(r)", "")
+                found[name] = [label, dimension(name, wire)]
+    rows = [f"  {name}: {json.dumps(row, ensure_ascii=False)}," for name, row in found.items()]
+    return "\n".join([*lines, *rows, "};", ""])
 
 
 if __name__ == "__main__":

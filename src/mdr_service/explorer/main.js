@@ -1,7 +1,7 @@
 // The page: inputs -> form -> requests -> numbers and charts -> address.
 
 import { draw, redraw } from "./charts.js";
-import { make, makeButton } from "./dom.js";
+import { make, makeButton, makeTable } from "./dom.js";
 import { choiceRow, mark, numberRow, optionalRow } from "./form.js";
 import { showEditor } from "./load_path.js";
 import { MATERIALS, materialOf, strengthOf } from "./materials.js";
@@ -21,7 +21,10 @@ const $ = (selector) => document.querySelector(selector);
 let inputs;
 let catalogue = {};
 let requests = [];
+// Error that is shown, or null.
+let problem = null;
 let last = null;
+let version = "";
 // Fields for tables, by the key of their input.
 const tables = {};
 // Keys of the fields that hold no value that can be read.
@@ -262,6 +265,7 @@ function placed({ pointer, detail }) {
 }
 
 function showProblem(error) {
+  problem = error;
   const box = $("#problem");
   document.querySelectorAll(".field:has(.problem)").forEach((field) => mark(field, ""));
   box.hidden = !error;
@@ -341,24 +345,53 @@ const solve = newestWins(async () => {
   }
 });
 
-/** Lay out the page as a report that states the inputs in words, or as a screen again. */
-function showForPrint(printing) {
-  document.documentElement.classList.toggle("printing", printing);
+// Points of a table or curve that a report lists.
+const LISTED = 200;
+
+/** Return the rows `[label, value]` of the inputs in the form. */
+function givenRows() {
   const shown = document.querySelectorAll("#inputs fieldset:not(#units, [hidden]) label.row");
   const given = [...shown].map((row) => {
     const [control, words] = [row.querySelector("input, select"), [...row.querySelectorAll("span")]];
     const value = control.selectedOptions?.[0].text ?? (control.value || control.placeholder);
-    return `${words[0].textContent}: ${value} ${words[1]?.textContent ?? ""}`.trim();
+    return [words[0].textContent, `${value} ${words[1]?.textContent ?? ""}`.trim()];
   });
-  if (inputs.kind === "tabulated") given.splice(1, 0, `table of ${inputs.table.r.length} points`);
+  if (inputs.kind === "tabulated") given.splice(1, 0, ["Table", `${inputs.table.r.length} points`]);
+  if (inputs.tab === "fit") given.push(["Measured curve", `${inputs.curve.r.length} points`]);
   if (inputs.tab === "cycle") {
     const dimensions = [inputs.normal, inputs.tangential].map((name) => QUANTITIES[name][1]);
     const points = pathPoints(inputs).map((point) => point.map((x, i) => quantity(x, dimensions[i], inputs)).join(", "));
-    given.push(`points of the path (normal, tangential): ${points.join("; ")}`);
+    given.push(["Points of the path (normal, tangential)", points.join("; ")]);
   }
-  $("#given").textContent = `${ANALYSES[inputs.tab].title}. ${given.join("; ")}.`;
-  // The points of a table would fill the page.
-  $("#link").textContent = new URL(toAddress(inputs).replace(/#.*/, ""), document.baseURI).href;
+  return given;
+}
+
+/** Return the words of a report about the data of a table or a curve. */
+function dataWords(name, heads, { r, f, units }) {
+  const title = `${name} (${heads.map((head, i) => `${head} [${units[i]}]`).join(", ")})`;
+  if (r.length <= LISTED) return `${title}: ${r.map((x, i) => `${x}, ${f[i]}`).join("; ")}.`;
+  const ends = [0, r.length - 1].map((i) => `${r[i]}, ${f[i]}`).join(" to ");
+  return `${title}: ${r.length} points, ${ends}. They are in the link of the page and in the CSV of its charts, not in this report.`;
+}
+
+/** Lay out the page as a report of inputs and results, or as a screen again. */
+function showForPrint(printing) {
+  document.documentElement.classList.toggle("printing", printing);
+  const results = [...document.querySelectorAll("#numbers div")].map((entry) => [...entry.children].map(({ textContent }) => textContent));
+  const date = new Date().toLocaleDateString("en-GB", { day: "numeric", month: "long", year: "numeric" });
+  const table = (title, rows) => make("section", {}, make("h2", {}, title), makeTable([], rows));
+  $("#report").replaceChildren(
+    make("p", {}, `${ANALYSES[inputs.tab].title}: ${ANALYSES[inputs.tab].lead}`),
+    make("p", {}, `${date}, MDR ${version}`),
+    make("div", { className: "tables" }, table("Inputs", givenRows()), table("Results", results)));
+  const held = [
+    ...(inputs.kind === "tabulated" ? [dataWords("Table", ["r", "f"], inputs.table)] : []),
+    ...(inputs.tab === "fit" ? [dataWords("Measured curve", ["d", "F"], inputs.curve)] : []),
+  ];
+  $("#data").textContent = held.join(" ");
+  // The points of a long table are no part of a link that anybody would type.
+  const whole = new URL(toAddress(inputs), document.baseURI).href;
+  $("#link").textContent = whole.length < 2000 ? whole : `${whole.replace(/#.*/, "")} (the shape and the load; the data below complete it)`;
   if (printing) redraw();
 }
 
@@ -424,4 +457,6 @@ showAddress();
 fetch("v1/profiles").then((response) => response.json()).then(({ profiles }) => {
   catalogue = Object.fromEntries(profiles.map((profile) => [profile.kind, profile]));
   if (unreadable.size === 0) showForm();
+  showProblem(problem);
 });
+fetch("health").then((response) => response.json()).then((health) => ({ version } = health));

@@ -74,7 +74,7 @@ class ContactAnswer(SolvedAnswer):
         "Normal stiffness, dF_N/dd = 2 E* a; of an adhesive contact at constant w, null at pull-off "
         "under a prescribed depth, where it is infinite"
     )
-    elastic_energy: list[float] = _energy("Elastic energy of the contact")
+    elastic_energy: list[float] = _energy("Elastic energy, of the contact")
     data_error: list[float] = _number(
         "Error by the points of a table, an estimate relative to depth and force",
         default=None,
@@ -132,7 +132,7 @@ class HistoryAnswer(SolvedAnswer):
     tangential_displacement: list[float] = _length("Tangential displacement u_x, of the bodies")
     tangential_force: list[float] = _force("Tangential force F_x")
     dissipated_energy: list[float] = _energy("Dissipated energy, by slip since the start")
-    elastic_energy: list[float] = _energy("Elastic energy of the normal load")
+    elastic_energy: list[float] = _energy("Elastic energy, of the normal load")
     tangential_energy: list[float] = _energy("Elastic energy of the tangential load")
     regime: list[Regime] = Field(
         description="Slip regime: `no_contact`, `stick`, `partial_slip` or `full_slip`."
@@ -243,8 +243,8 @@ class YieldOnsetForce(Answer):
 class SubsurfaceAnswer(SolvedAnswer):
     """Requested stresses by load, z and x; tension is positive."""
 
-    x: list[float] = _length("Coordinates along the tangential force, requested or chosen")
-    z: list[float] = _length("Depths, requested or chosen")
+    x: list[float] = _length("Coordinate x, along the tangential force, requested or chosen")
+    z: list[float] = _length("Depth z, requested or chosen")
     stress_xx: _Map = _pressure(f"Normal stress σ_xx; {_NULL}", default=None)
     stress_yy: _Map = _pressure(f"Normal stress σ_yy; {_NULL}", default=None)
     stress_zz: _Map = _pressure(f"Normal stress σ_zz; {_NULL}", default=None)
