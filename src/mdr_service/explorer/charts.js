@@ -153,7 +153,7 @@ function rangeOf(spec, inputs, peak) {
 function layout(spec, inputs, colours, { width, height }) {
   const { lines, notes } = verticals(spec, inputs, colours);
   // Mean width of a character of the font [px].
-  const fitting = (length) => Math.max(12, Math.floor(length / 7.5));
+  const fitting = (length) => Math.max(12, Math.floor(length / 8.3));
   const peak = spec.linked ? spec.traces.map(peakOf).find(Boolean) : undefined;
   if (peak) notes.push(peakNote(peak, spec, inputs, colours));
   const axis = (title, length) => ({
@@ -162,7 +162,7 @@ function layout(spec, inputs, colours, { width, height }) {
     exponentformat: "power",
   });
   return {
-    font: { color: colours.ink, family: "system-ui, sans-serif", size: 13 },
+    font: { color: colours.ink, family: "system-ui, sans-serif", size: document.documentElement.className === "printing" ? 11 : 13 },
     paper_bgcolor: colours.paper, plot_bgcolor: colours.paper,
     margin: { l: 56, r: 16, t: 24, b: 48 },
     showlegend: !spec.map && spec.traces.length > 1,
@@ -170,7 +170,7 @@ function layout(spec, inputs, colours, { width, height }) {
     hovermode: spec.map ? "closest" : "x unified",
     hoverlabel: { bgcolor: colours.paper, font: { color: colours.ink } },
     xaxis: {
-      ...axis(spec.x, width - 90), type: spec.logarithmic ? "log" : "linear",
+      ...axis(spec.x, width - 100), type: spec.logarithmic ? "log" : "linear",
       range: (spec.range ?? (spec.map ? ends(spec.traces[0].x) : undefined))?.map((x) => x / unit(spec.x[1], inputs, spec.x[2]).factor),
       constrain: "domain",
     },

@@ -95,12 +95,17 @@ export function fromAddress(search, hash) {
   return { inputs, unread };
 }
 
-/** Return the address of the inputs, with the fields of the chosen profile. */
+/**
+ * Return the address of the inputs, with those that differ from their defaults.
+ *
+ * Links are kept in reports: a default never changes, another name gets another default.
+ */
 export function toAddress(inputs) {
   const member = ([key, value]) =>
     `${key}=${encodeURIComponent(value).replace(/%2C/g, ",").replace(/%3B/g, ";")}`;
-  const keys = new Set([...Object.keys(DEFAULTS), ...Object.keys(KINDS[inputs.kind].fields)]);
-  const query = [...keys].map((key) => member([key, inputs[key]])).join("&");
+  const defaults = { ...DEFAULTS, ...KINDS[inputs.kind].fields };
+  const keys = Object.keys(defaults).filter((key) => ["tab", "kind"].includes(key) || inputs[key] !== defaults[key]);
+  const query = keys.map((key) => member([key, inputs[key]])).join("&");
   const held = [["table", inputs.kind === "tabulated"], ["curve", inputs.tab === "fit"]].filter(([, shown]) => shown);
   const columns = held.flatMap(([key]) => {
     const { r, f, units } = inputs[key];

@@ -354,7 +354,9 @@ function givenRows() {
   const given = [...shown].map((row) => {
     const [control, words] = [row.querySelector("input, select"), [...row.querySelectorAll("span")]];
     const value = control.selectedOptions?.[0].text ?? (control.value || control.placeholder);
-    return [words[0].textContent, `${value} ${words[1]?.textContent ?? ""}`.trim()];
+    // In place of a number a word may stand, such as that of a half-space.
+    const unitName = /\d/.test(value) ? words[1]?.textContent ?? "" : "";
+    return [words[0].textContent, `${value} ${unitName}`.trim()];
   });
   if (inputs.kind === "tabulated") given.splice(1, 0, ["Table", `${inputs.table.r.length} points`]);
   if (inputs.tab === "fit") given.push(["Measured curve", `${inputs.curve.r.length} points`]);
