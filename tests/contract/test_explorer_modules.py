@@ -32,7 +32,7 @@ def test_forged_addresses_yield_offered_words_and_finite_numbers() -> None:
         table, curve = (result["inputs"].pop(name) for name in ("table", "curve"))
         assert path.fullmatch(result["inputs"].pop("path")), address
         assert numbers.fullmatch(result["inputs"].pop("breaks", "")), address
-        for optional in ("uncertainty", "thickness"):
+        for optional in ("uncertainty", "thickness", "mass", "density", "yield1", "yield2"):
             given = result["inputs"].pop(optional, "")
             assert given == "" or math.isfinite(given), address
         held = [*result["inputs"].values()]

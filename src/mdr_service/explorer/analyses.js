@@ -56,6 +56,12 @@ function derived(inputs, key, label, dimension, value, of) {
   return { key, label, dimension, optional: true, placeholder: value === undefined ? "needed" : text(value), help: of };
 }
 
+/** Return the field of the load that a list of the user's own replaces, or undefined. */
+export function listedField(inputs) {
+  if (inputs.tab === "impact") return ANALYSES.impact.fields(inputs).find(({ key }) => key === "approach");
+  return loadFields(inputs).find(({ key }) => key === "load");
+}
+
 export const ANALYSES = {
   press: {
     title: "Press",

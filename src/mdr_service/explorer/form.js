@@ -22,7 +22,7 @@ function fieldOf(key, ...contents) {
 /** Show what is wrong with the value of a field, or that nothing is. */
 export function mark(element, problem) {
   element.querySelector(".problem").textContent = problem;
-  const control = element.querySelector(":scope > label > :is(input, select), :scope > textarea");
+  const control = element.querySelector(":scope > label > :is(input, select), :is(:scope, :scope > .list) > textarea");
   control?.setAttribute("aria-invalid", String(problem !== ""));
 }
 

@@ -18,7 +18,7 @@ const DEFAULTS = {
   normal: "normal_force", tangential: "tangential_force",
   path: "100,0;100,20;100,-20;100,20",
   fitted: "contact_point", mass: "", density: "", share: 2 / 7, approach: 0.1, along: 0.05,
-  body: 1, yield1: "", yield2: "",
+  body: 1, yield1: "", yield2: "", loads: "",
   oscillation: "tangential_force", amplitude: 20, wear: 1e-13, cycles: 1e5,
   ul: "mm", ud: "µm", uf: "N", up: "MPa", um: "GPa",
 };
@@ -36,6 +36,7 @@ const CHOICES = {
 const optional = (text) => (text === "" ? text : number(text));
 // Inputs that are lists of numbers, or that may be empty.
 const OTHERS = {
+  loads: (text) => (text === "" || text.split(",").every(isNumber) ? text : undefined),
   path: (text) => (pathPoints({ path: text }).every(isPoint) ? text : undefined),
   breaks: (text) => (text === "" || text.split(",").every(isNumber) ? text : undefined),
   uncertainty: optional, thickness: optional, mass: optional, density: optional, yield1: optional, yield2: optional,

@@ -6,16 +6,17 @@ import { choiceRow, mark, numberRow, optionalRow } from "./form.js";
 import { showEditor } from "./load_path.js";
 import { MATERIALS, materialOf, strengthOf } from "./materials.js";
 import { inWords } from "./messages.js";
-import { bodyFields, loadFields, ANALYSES, BODIES, THICKNESS } from "./analyses.js";
-import { copied, download, fileName, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
+import { bodyFields, listedField, loadFields, ANALYSES, BODIES, THICKNESS } from "./analyses.js";
+import { copied, download, fileName, inShownUnits, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
 import { defaultInputs, fromAddress, pathPoints, RIGID, TABS, toAddress, withKind } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
 import { noteOnUnits } from "./results.js";
 import { KINDS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
+import { ownLoads } from "./own_loads.js";
 import { showSketch } from "./sketch.js";
 import { tableField } from "./table_field.js";
 import { CURVE, PROFILE } from "./table_reader.js";
-import { BASE_UNITS, format, quantity } from "./units.js";
+import { BASE_UNITS, format, quantity, uncertain } from "./units.js";
 
 const $ = (selector) => document.querySelector(selector);
 let inputs;
@@ -27,6 +28,8 @@ let last = null;
 let version = "";
 // Fields for tables, by the key of their input.
 const tables = {};
+// Section of the user's own loads.
+let own;
 // Keys of the fields that hold no value that can be read.
 const unreadable = new Set();
 
@@ -37,7 +40,7 @@ const unreadable = new Set();
 function setState(state) {
   document.body.dataset.state = state;
   const outdated = state === "refused" || state === "unreadable";
-  for (const id of ["main-numbers", "numbers", "accuracy", "warnings", "charts", "take-away"]) $(`#${id}`).inert = outdated;
+  for (const id of ["main-numbers", "numbers", "accuracy", "warnings", "charts", "own", "take-away"]) $(`#${id}`).inert = outdated;
 }
 
 /** Show the case of the address. */
@@ -193,8 +196,9 @@ function showForm() {
 // Results ----------------------------------------------------------------------------------------
 
 function showNumbers(numbers) {
-  const entries = () => numbers.map(([label, value, dimension]) => {
-    const text = typeof value === "string" ? value : quantity(value, dimension, inputs);
+  const entries = () => numbers.map(([label, value, dimension, error]) => {
+    const text = typeof value === "string" ? value
+      : error === undefined ? quantity(value, dimension, inputs) : uncertain(value, error, dimension, inputs);
     return make("div", {}, make("dt", {}, label), make("dd", {}, text));
   });
   $("#numbers").replaceChildren(...entries());
@@ -299,7 +303,7 @@ function showRequest(name) {
 
 async function saveCsv() {
   const { name, path, body } = requests.find((request) => request.name === $("#request").value);
-  download(`${fileName(name)}.csv`, await queryCsv(path, body), "text/csv");
+  download(`${fileName(name)}.csv`, inShownUnits(await queryCsv(path, body), inputs), "text/csv");
 }
 
 function showPath() {
@@ -400,6 +404,7 @@ function showForPrint(printing) {
 function refresh() {
   clearTimeout(refresh.timer);
   sketch();
+  own.show(inputs, listedField(inputs));
   if (unreadable.size) return setState("unreadable");
   // Browsers limit how often the address may change.
   refresh.timer = setTimeout(() => history.replaceState(null, "", toAddress(inputs)), 250);
@@ -438,6 +443,12 @@ function connect() {
   for (const [key, kind] of [["table", PROFILE], ["curve", CURVE]]) {
     tables[key] = tableField($(`#${key}-fields`), kind, { change: (table) => change(key, table), fail: () => fail(key) });
   }
+  own = ownLoads($("#own"), {
+    state: () => ({ inputs, field: listedField(inputs), result: last, title: ANALYSES[inputs.tab].title }),
+    solve: (next) => ANALYSES[next.tab].solve(next, (name, path, body) => query(path, body)),
+    change: (loads) => change("loads", loads),
+    fail: () => fail("loads"),
+  });
   $("#reset").addEventListener("click", () => show({ ...defaultInputs(), tab: inputs.tab }));
   $("#request").addEventListener("change", showSource);
   $("#language").addEventListener("change", showSource);

@@ -5,7 +5,7 @@ import { massOf, strengthOf } from "./materials.js";
 import { QUANTITIES } from "./quantities.js";
 import { Refusal } from "./requests.js";
 import { inMetres, inSI } from "./shapes.js";
-import { quantity, uncertain } from "./units.js";
+import { quantity } from "./units.js";
 
 const POINTS = 400;
 const SAMPLES_PER_STEP = 40;
@@ -441,7 +441,7 @@ export async function solveFit(inputs, query) {
   const values = fit.map((name, i) => {
     const [label, dimension] = QUANTITIES[name];
     const [value, error] = [found[name][0], found.standard_errors[i]];
-    return [label, uncertain(value, error, dimension, inputs)];
+    return [label, value, dimension, error];
   });
   // With adhesion some of the measured points are left out.
   const { indentation_depth: used } = found;
