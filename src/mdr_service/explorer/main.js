@@ -1,7 +1,7 @@
 // The page: inputs -> form -> requests -> numbers and charts -> address.
 
 import { draw, redraw } from "./charts.js";
-import { make, makeButton, makeTable } from "./dom.js";
+import { make, makeButton } from "./dom.js";
 import { choiceRow, mark, numberRow, optionalRow } from "./form.js";
 import { showEditor } from "./load_path.js";
 import { MATERIALS, materialOf, strengthOf } from "./materials.js";
@@ -10,6 +10,7 @@ import { bodyFields, listedField, loadFields, ANALYSES, BODIES, THICKNESS } from
 import { copied, download, fileName, inShownUnits, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
 import { defaultInputs, fromAddress, pathPoints, RIGID, TABS, toAddress, withKind } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
+import { showReport } from "./report.js";
 import { noteOnUnits } from "./results.js";
 import { KINDS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
 import { ownLoads } from "./own_loads.js";
@@ -28,6 +29,10 @@ let last = null;
 let version = "";
 // Fields for tables, by the key of their input.
 const tables = {};
+// Analysis whose results are shown.
+let shownTab;
+// Time after which a computation is reported [ms]: shorter ones would flicker.
+const BUSY = 400;
 // Section of the user's own loads.
 let own;
 // Keys of the fields that hold no value that can be read.
@@ -39,6 +44,12 @@ const unreadable = new Set();
  */
 function setState(state) {
   document.body.dataset.state = state;
+  // The results of another analysis do not answer the question of this one.
+  document.body.classList.toggle("stale", shownTab !== inputs.tab);
+  $("#results").setAttribute("aria-busy", String(state === "pending"));
+  clearTimeout(setState.timer);
+  $("#busy").textContent = "";
+  if (state === "pending") setState.timer = setTimeout(() => ($("#busy").textContent = "Computing …"), BUSY);
   const outdated = state === "refused" || state === "unreadable";
   for (const id of ["main-numbers", "numbers", "accuracy", "warnings", "charts", "own", "take-away"]) $(`#${id}`).inert = outdated;
 }
@@ -189,6 +200,8 @@ function showForm() {
     const selected = tab.id === `tab-${inputs.tab}`;
     tab.setAttribute("aria-selected", String(selected));
     tab.tabIndex = selected ? 0 : -1;
+    // On a narrow screen the tabs scroll.
+    if (selected) tab.parentElement.scrollLeft = tab.offsetLeft - tab.parentElement.offsetLeft - 80;
   });
   $("#lead").textContent = analysis.lead;
 }
@@ -333,6 +346,8 @@ const solve = newestWins(async () => {
     if (current.tab !== inputs.tab) return;
     requests = recorded;
     last = result;
+    shownTab = current.tab;
+    document.body.classList.remove("stale");
     if (isShown()) showProblem(null);
     showNumbers(result.numbers);
     showAccuracy(result.responses, noteOnUnits(current, result.known.contact_radius));
@@ -349,55 +364,10 @@ const solve = newestWins(async () => {
   }
 });
 
-// Points of a table or curve that a report lists.
-const LISTED = 200;
-
-/** Return the rows `[label, value]` of the inputs in the form. */
-function givenRows() {
-  const shown = document.querySelectorAll("#inputs fieldset:not(#units, [hidden]) label.row");
-  const given = [...shown].map((row) => {
-    const [control, words] = [row.querySelector("input, select"), [...row.querySelectorAll("span")]];
-    const value = control.selectedOptions?.[0].text ?? (control.value || control.placeholder);
-    // In place of a number a word may stand, such as that of a half-space.
-    const unitName = /\d/.test(value) ? words[1]?.textContent ?? "" : "";
-    return [words[0].textContent, `${value} ${unitName}`.trim()];
-  });
-  if (inputs.kind === "tabulated") given.splice(1, 0, ["Table", `${inputs.table.r.length} points`]);
-  if (inputs.tab === "fit") given.push(["Measured curve", `${inputs.curve.r.length} points`]);
-  if (inputs.tab === "cycle") {
-    const dimensions = [inputs.normal, inputs.tangential].map((name) => QUANTITIES[name][1]);
-    const points = pathPoints(inputs).map((point) => point.map((x, i) => quantity(x, dimensions[i], inputs)).join(", "));
-    given.push(["Points of the path (normal, tangential)", points.join("; ")]);
-  }
-  return given;
-}
-
-/** Return the words of a report about the data of a table or a curve. */
-function dataWords(name, heads, { r, f, units }) {
-  const title = `${name} (${heads.map((head, i) => `${head} [${units[i]}]`).join(", ")})`;
-  if (r.length <= LISTED) return `${title}: ${r.map((x, i) => `${x}, ${f[i]}`).join("; ")}.`;
-  const ends = [0, r.length - 1].map((i) => `${r[i]}, ${f[i]}`).join(" to ");
-  return `${title}: ${r.length} points, ${ends}. They are in the link of the page and in the CSV of its charts, not in this report.`;
-}
-
 /** Lay out the page as a report of inputs and results, or as a screen again. */
 function showForPrint(printing) {
   document.documentElement.classList.toggle("printing", printing);
-  const results = [...document.querySelectorAll("#numbers div")].map((entry) => [...entry.children].map(({ textContent }) => textContent));
-  const date = new Date().toLocaleDateString("en-GB", { day: "numeric", month: "long", year: "numeric" });
-  const table = (title, rows) => make("section", {}, make("h2", {}, title), makeTable([], rows));
-  $("#report").replaceChildren(
-    make("p", {}, `${ANALYSES[inputs.tab].title}: ${ANALYSES[inputs.tab].lead}`),
-    make("p", {}, `${date}, MDR ${version}`),
-    make("div", { className: "tables" }, table("Inputs", givenRows()), table("Results", results)));
-  const held = [
-    ...(inputs.kind === "tabulated" ? [dataWords("Table", ["r", "f"], inputs.table)] : []),
-    ...(inputs.tab === "fit" ? [dataWords("Measured curve", ["d", "F"], inputs.curve)] : []),
-  ];
-  $("#data").textContent = held.join(" ");
-  // The points of a long table are no part of a link that anybody would type.
-  const whole = new URL(toAddress(inputs), document.baseURI).href;
-  $("#link").textContent = whole.length < 2000 ? whole : `${whole.replace(/#.*/, "")} (the shape and the load; the data below complete it)`;
+  showReport(inputs, ANALYSES[inputs.tab], version);
   if (printing) redraw();
 }
 
@@ -415,10 +385,13 @@ function refresh() {
 // Start ------------------------------------------------------------------------------------------
 
 function showTab(tab) {
+  // The address of the tab that is left is complete before the next step of the history.
+  if (unreadable.size === 0) history.replaceState(null, "", toAddress(inputs));
   inputs = { ...inputs, tab };
   if (tab === "wear" && inputs.control === "contact_radius") {
     inputs = { ...inputs, control: "normal_force", load: last?.known?.normal_force ?? 100 };
   }
+  history.pushState(null, "", toAddress(inputs));
   show(inputs);
 }
 

@@ -244,11 +244,15 @@ export async function solveCycle(inputs, query) {
   // The last point where the load was that of the end closes a cycle.
   const closed = points.slice(0, -1).findLastIndex((point) => point.join() === points.at(-1).join());
   const energyThere = path.dissipated_energy[(closed + 1) * SAMPLES_PER_STEP - 1];
+  // Several loops within each other end where they began, too.
+  const ways = points.slice(closed + 1).map(([, t], i) => Math.sign(t - points[closed + i][1])).filter(Boolean);
+  const isOne = ways.filter((way, i) => i && way !== ways[i - 1]).length < 3;
+  const name = closed < 0 || isOne ? "Energy per cycle" : `Energy of the loops from point ${closed + 1}`;
   return {
     responses: [path, field, ...surface.map(({ response }) => response)],
     known: end,
     numbers: [
-      ["Energy per cycle", ...(closed < 0 ? ["no closed loop"] : [end.dissipated_energy - energyThere, "energy"])],
+      [name, ...(closed < 0 ? ["no closed loop"] : [end.dissipated_energy - energyThere, "energy"])],
       ...numbersOf(end, ["tangential_displacement", "dissipated_energy"]),
       ...surface.flatMap(({ numbers }) => numbers),
       ["Regime at the end", end.regime.replace("_", " ")],
@@ -390,6 +394,9 @@ export async function solveWear(inputs, query) {
   const { radius } = course;
   const limit = await query("Limit", "v1/wear", { ...body, radius });
   const [now, final] = [single(course, cycles.indexOf(inputs.cycles)), single(limit)];
+  // The curve over the cycles goes beyond those of the form, where wear may end.
+  const isWorn = now.worn_volume > 0.99 * course.worn_volume.at(-1);
+  const warnings = course.warnings.filter(({ code }) => isWorn || code !== "limit_reached");
   // Unbounded wear has no limit, and outside a flat punch there is no profile.
   const depth = (profile) => profile.map((f, i) => {
     const unworn = limit.initial_profile[i];
@@ -401,7 +408,7 @@ export async function solveWear(inputs, query) {
   // A narrow annulus fills a third of the chart.
   const range = width < 0.2 * outer ? [stick - width, outer + width] : undefined;
   return {
-    responses: [limit, course],
+    responses: [limit, { ...course, warnings }],
     known: now,
     numbers: [
       ...numbersOf(now, ["worn_volume", "contact_radius", "stick_radius"]),
