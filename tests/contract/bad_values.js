@@ -40,7 +40,7 @@ async ({ tabs, kinds, values }) => {
                 states[state] = (states[state] ?? 0) + 1;
                 const shown = document.querySelector("#numbers");
                 // The address leaves out what has its default.
-                const value = new URLSearchParams(drawn.split("#")[0]).get(key) ?? "";
+                const value = new URLSearchParams(drawn.split("#")[0]).get(key) ?? String(withKind(defaultInputs(), kind)[key]);
                 const belong = state === "current" && value === (text && String(Number(text)));
                 const empty = shown.childElementCount === 0;
                 const dimmed = [...document.querySelectorAll("#numbers, #charts, #main-numbers")].every(({ inert }) => inert)

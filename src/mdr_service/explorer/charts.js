@@ -142,11 +142,13 @@ function rangeOf(spec, inputs, peak) {
     const depths = scaled(spec.traces[0].y, spec.y[1], inputs, spec.y[2]);
     return { range: [Math.max(...depths), Math.min(...depths)], scaleanchor: "x", constrain: "domain" };
   }
-  if (!peak) return { autorange: true };
+  if (!peak && !spec.range) return { autorange: true };
   const { factor } = unit(spec.y[1], inputs, spec.y[2]);
-  const values = spec.traces.flatMap(({ y }) => y.filter(Number.isFinite));
-  const [low, high] = [Math.min(...values), Math.max(...values)];
-  const range = [Math.max(low, -peak.bound), Math.min(high, peak.bound)].map((end) => end / factor);
+  const isShown = (at) => !spec.range || (at >= spec.range[0] && at <= spec.range[1]);
+  const values = spec.traces.flatMap(({ x, y }) => y.filter((value, i) => Number.isFinite(value) && isShown(x[i])));
+  const [low, high] = ends(values);
+  const bound = peak?.bound ?? Infinity;
+  const range = [Math.max(low, -bound), Math.min(high, bound)].map((end) => end / factor);
   return { autorange: false, range: [range[0] - 0.05 * (range[1] - range[0]) * (low < 0), range[1] + 0.05 * (range[1] - range[0])] };
 }
 

@@ -407,6 +407,9 @@ export async function solveWear(inputs, query) {
   const width = outer - stick;
   // A narrow annulus fills a third of the chart.
   const range = width < 0.2 * outer ? [stick - width, outer + width] : undefined;
+  // The radii reach as far as the contact after the largest number of cycles.
+  const near = radius.at(-1) > 3 * outer ? { range: [0, 1.5 * outer] } : {};
+  const hasLimit = final.worn_volume !== null;
   return {
     responses: [limit, { ...course, warnings }],
     known: now,
@@ -421,15 +424,15 @@ export async function solveWear(inputs, query) {
       fieldChart("Evolution", "Profile", "profile", edges, radius, [
         { name: "after these cycles", y: now.profile },
         { name: "unworn", y: limit.initial_profile, role: "limit" },
-        { name: "limit", y: final.limiting_profile, role: "second" },
-      ]),
+        ...(hasLimit ? [{ name: "limit", y: final.limiting_profile, role: "second" }] : []),
+      ], near),
       fieldChart("Evolution", "Worn depth", "worn_depth", edges, radius, [
         { name: "after these cycles", y: depth(now.profile) },
-        { name: "limit", y: depth(final.limiting_profile), role: "limit" },
-      ], { range }),
+        ...(hasLimit ? [{ name: "limit", y: depth(final.limiting_profile), role: "limit" }] : []),
+      ], range ? { range } : near),
       fieldChart("Evolution", "Pressure after these cycles", "pressure", edges, radius, [
         { name: "pressure", y: now.pressure, fill: true },
-      ]),
+      ], near),
       relationChart(
         "Evolution", "Worn volume against cycles", course, ["cycles", "worn_volume"], now,
         { mark: "these cycles", logarithmic: true },
