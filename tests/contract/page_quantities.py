@@ -10,6 +10,8 @@ import re
 import sys
 from typing import Any
 
+from mdr_service.schemas.quantities import heading
+
 # Schemas that describe the quantities, the first one of each.
 DESCRIBED = [
     "NormalAnswer",
@@ -53,8 +55,7 @@ def quantities(document: dict[str, Any]) -> str:
         for name, member in document["components"]["schemas"][schema]["properties"].items():
             wire = member.get("x-dimension", "1")
             if name not in found and (wire not in {"1", "as the parameter"} or name in NUMBERS):
-                label = re.split(r"[,;:]| ?\[", member["description"])[0].replace("(r)", "")
-                found[name] = [label, dimension(name, wire)]
+                found[name] = [heading(member["description"]), dimension(name, wire)]
     rows = [f"  {name}: {json.dumps(row, ensure_ascii=False)}," for name, row in found.items()]
     return "\n".join([*lines, *rows, "};", ""])
 

@@ -243,8 +243,8 @@ class YieldOnsetForce(Answer):
 class SubsurfaceAnswer(SolvedAnswer):
     """Requested stresses by load, z and x; tension is positive."""
 
-    x: list[float] = _length("Coordinate x, along the tangential force, requested or chosen")
-    z: list[float] = _length("Depth z, requested or chosen")
+    x: list[float] = _length("x, along the tangential force, requested or chosen")
+    z: list[float] = _length("z, the depth, requested or chosen")
     stress_xx: _Map = _pressure(f"Normal stress σ_xx; {_NULL}", default=None)
     stress_yy: _Map = _pressure(f"Normal stress σ_yy; {_NULL}", default=None)
     stress_zz: _Map = _pressure(f"Normal stress σ_zz; {_NULL}", default=None)
