@@ -130,7 +130,7 @@ def test_numbers_are_shown_in_units_of_their_size(
     [
         (1.0697e7, 1.23e4, "0.010697 ± 0.000012 GPa"),
         (2.1e11, 4e9, "210.0 ± 4.0 GPa"),
-        (5e8, 3e11, "0.50 ± 300 GPa"),
+        (5e9, 3e11, "5 ± 300 GPa"),
     ],
 )
 def test_digits_follow_the_standard_error(value: float, error: float, shown: str) -> None:

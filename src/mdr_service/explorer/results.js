@@ -245,7 +245,8 @@ export async function solveCycle(inputs, query) {
   const closed = points.slice(0, -1).findLastIndex((point) => point.join() === points.at(-1).join());
   const energyThere = path.dissipated_energy[(closed + 1) * SAMPLES_PER_STEP - 1];
   // Several loops within each other end where they began, too.
-  const ways = points.slice(closed + 1).map(([, t], i) => Math.sign(t - points[closed + i][1])).filter(Boolean);
+  const loop = points.slice(Math.max(closed, 0));
+  const ways = loop.slice(1).map(([, t], i) => Math.sign(t - loop[i][1])).filter(Boolean);
   const isOne = ways.filter((way, i) => i && way !== ways[i - 1]).length < 3;
   const name = closed < 0 || isOne ? "Energy per cycle" : `Energy of the loops from point ${closed + 1}`;
   return {
