@@ -51,9 +51,9 @@ function pushFields(inputs, key = "push") {
 }
 
 /** Return an optional field whose value, if it is empty, follows from other inputs. */
-function derived(inputs, key, label, dimension, value, of) {
+function derived(inputs, key, label, dimension, value) {
   const text = (number) => String(Number(Number(shown(number, dimension, inputs)).toPrecision(4)));
-  return { key, label, dimension, optional: true, placeholder: value === undefined ? "needed" : text(value), help: of };
+  return { key, label, dimension, optional: true, placeholder: value === undefined ? "needed" : text(value) };
 }
 
 /** Return the field of the load that a list of the user's own replaces, or undefined. */
@@ -91,9 +91,9 @@ export const ANALYSES = {
     lead: "The body hits the other one obliquely: how does it rebound, and how much energy does friction take?",
     fields: (inputs) => [
       FRICTION,
-      derived(inputs, "density", "Density of body 1", "kg/m³", densityOf(inputs), "Empty: that of its material."),
-      derived(inputs, "mass", "Mass m of body 1", "kg", massOf(inputs), "Empty: a solid ball of this radius and density."),
-      { key: "share", label: "Tangential mass over m", dimension: "1", range: [0.1, 1], help: "2/7 for a solid ball, 2/5 for a hollow one, 1 without rotation." },
+      derived(inputs, "density", "Density of body 1", "kg/m³", densityOf(inputs)),
+      derived(inputs, "mass", "Mass m of body 1", "kg", massOf(inputs)),
+      { key: "share", label: "Tangential mass over m", dimension: "1", range: [0.1, 1] },
       { key: "approach", label: "Normal velocity", dimension: "m/s" },
       { key: "along", label: "Tangential velocity", dimension: "m/s" },
     ],
@@ -106,7 +106,7 @@ export const ANALYSES = {
       ...pushFields(inputs, "shear"),
       STRESSED,
       derived(inputs, `yield${inputs.body}`, `Yield strength of body ${inputs.body}`, "pressure",
-        strengthOf(inputs, inputs.body), "Empty: that of its material, if the list has one."),
+        strengthOf(inputs, inputs.body)),
     ],
     solve: solveStress,
   },

@@ -1,6 +1,7 @@
 // Fields of the form: a number with its unit and a slider, a list of numbers, or a choice.
 
 import { make } from "./dom.js";
+import { HELP } from "./help.js";
 import { noNumber, read, shown, unit } from "./units.js";
 
 const SPAN = 100;
@@ -14,9 +15,12 @@ function sliderOf(field, value, reference, scale) {
   return { min: Math.log10(low), max: Math.log10(high), to: Math.log10, from: (x) => 10 ** x };
 }
 
+const describedBy = (key) => `problem-${key}${HELP[key] ? ` help-${key}` : ""}`;
+
 function fieldOf(key, ...contents) {
   const problem = make("p", { className: "problem", role: "alert", id: `problem-${key}` });
-  return make("div", { className: "field", "data-key": key }, ...contents, problem);
+  const help = HELP[key] ? [make("p", { className: "help", id: `help-${key}` }, HELP[key])] : [];
+  return make("div", { className: "field", "data-key": key }, ...contents, problem, ...help);
 }
 
 /** Show what is wrong with the value of a field, or that nothing is. */
@@ -30,14 +34,14 @@ export function mark(element, problem) {
 export function choiceRow(key, label, choices, chosen, choose) {
   const options = choices.map(([value, text]) => new Option(text, value, false, value === chosen));
   const onchange = () => choose(choices[select.selectedIndex][0]);
-  const select = make("select", { id: `field-${key}`, onchange }, ...options);
+  const select = make("select", { id: `field-${key}`, onchange, "aria-describedby": describedBy(key) }, ...options);
   return fieldOf(key, make("label", { className: "row" }, make("span", {}, label), select));
 }
 
 /** Return a row with a text and the unit of its numbers, `[label, text, unit]`. */
 function textRow(key, label, name) {
   const text = make("input", {
-    type: "text", inputMode: "decimal", id: `field-${key}`, "aria-describedby": `problem-${key}`,
+    type: "text", inputMode: "decimal", id: `field-${key}`, "aria-describedby": describedBy(key),
   });
   const row = make("label", { className: "row" },
     make("span", {}, label), text, make("span", { className: "unit" }, name));

@@ -18,9 +18,15 @@ async function normalForce(inputs, query) {
   return (await query("Contact", "v1/normal", { ...basics(inputs), load })).normal_force[0];
 }
 
+function withoutFriction() {
+  const detail = "is 0, and nothing sticks: a contact without friction belongs to Press, or to Stress without tangential load";
+  return new Refusal({ title: "Invalid request", errors: [{ pointer: "/friction_coefficient", detail }] });
+}
+
 /** Return the members of a request about a tangential load, prescribed by `control`, under a normal force. */
 function pushed(inputs, force, control = inputs.push) {
   if (control === "none") return { ...basics(inputs), load: { normal_force: force } };
+  if (inputs.mu === 0) throw withoutFriction();
   const tangential = control === "ratio"
     ? { tangential_force: inputs.amount * inputs.mu * force }
     : { [control]: inputs.amount };
