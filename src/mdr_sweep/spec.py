@@ -9,6 +9,7 @@ from typing import Any, Final
 from mdr_core import __version__
 from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.tangential import TangentialContact
+from mdr_core.torsion import TorsionalContact
 from mdr_core.wear.limit import LimitingWear
 
 _NORMAL: Final = tuple(name for name in NORMAL_QUANTITIES if name != "maximum_pressure")
@@ -17,12 +18,14 @@ PULL_OFF: Final = ("pull_off_force", "pull_off_depth", "retraction")
 QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": _NORMAL,
     "tangential": (*_NORMAL, *TangentialContact.quantities),
+    "torsion": (*_NORMAL, *TorsionalContact.quantities),
     "wear": LimitingWear.quantities,
 }
 """Quantities that a sweep computes unless some are named, by query."""
 ONLY_IF_NAMED: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": ("maximum_pressure", "model_error", "data_error", *PULL_OFF),
     "tangential": ("maximum_pressure", "maximum_shear_stress", "model_error", "data_error"),
+    "torsion": ("maximum_pressure", "model_error", "data_error"),
     "wear": ("model_error",),
 }
 """Quantities that are computed if they are named. Maxima of fields take a search and can be
