@@ -16,6 +16,7 @@ from mdr_service.schemas.quantities import heading
 DESCRIBED = [
     "NormalAnswer",
     "TangentialAnswer",
+    "TorsionAnswer",
     "StressAnswer",
     "SubsurfaceAnswer",
     "EvolutionAnswer",
@@ -26,10 +27,16 @@ DESCRIBED = [
     "TangentialQuery",
 ]
 # Plain numbers that the page shows as quantities.
-NUMBERS = {"cycles", "data_error", "friction_coefficient"}
+NUMBERS = {"cycles", "data_error", "friction_coefficient", "rotation"}
 # Dimensions whose unit the page chooses apart from the others of the wire.
 DISPLACEMENTS = re.compile(r"depth|displacement|retraction|slip$|profile|contact_point")
-OWN = {"e_star": "modulus", "work_of_adhesion": "N/m"}
+OWN = {
+    "e_star": "modulus",
+    "work_of_adhesion": "N/m",
+    "rotation": "rad",
+    "torque": "N·m",
+    "torsional_stiffness": "N·m",
+}
 SHOWN = {
     "force*length": "energy", "force/length": "stiffness", "length^3": "volume",
     "length/time": "m/s", "time": "s", "force*time": "N·s",

@@ -188,13 +188,22 @@ export async function solvePress(inputs, query) {
   };
 }
 
+/** Return the twists about the axis, in place of the tangential load, until a twentieth of the radius sticks. */
+function twisted(query, { profile, material, load, friction_coefficient }, radius) {
+  const sticks = Array.from({ length: 40 }, (_, i) => radius * (1 - 0.95 * ((i + 1) / 40) ** 2));
+  const body = { profile, material, load, friction_coefficient, torsion: { stick_radius: sticks } };
+  return query("Twist", "v1/torsion", body);
+}
+
 export async function solvePush(inputs, query) {
   const force = await normalForce(inputs, query);
   const base = pushed(inputs, force);
   const limit = inputs.mu * force;
   const forces = Array.from({ length: 61 }, (_, i) => limit * (1 - (1 - i / 60) ** 2));
-  const [state, curve, field] = await Promise.all([
-    query("State", "v1/tangential", base),
+  const solved = query("State", "v1/tangential", base);
+  const [state, twist, curve, field] = await Promise.all([
+    solved,
+    solved.then(({ contact_radius: [radius] }) => twisted(query, base, radius)),
     query("Curve", "v1/tangential", { ...base, tangential: { tangential_force: forces } }),
     fieldsOf(query, "Fields", base, ["pressure", "shear_stress", "slip"]),
   ]);
@@ -204,7 +213,7 @@ export async function solvePush(inputs, query) {
   // Outside the contact, slip has no meaning.
   const slip = field.slip[0].map((value, i) => (field.radius[i] > now.contact_radius ? NaN : value));
   return {
-    responses: [state, curve, field],
+    responses: [state, twist, curve, field],
     known: now,
     numbers: [
       ...numbersOf(now, ["stick_radius", "tangential_displacement"]),
@@ -212,6 +221,7 @@ export async function solvePush(inputs, query) {
       ...numbersOf(now, [
         "contact_radius", "slip_width", "tangential_force", "tangential_stiffness", "dissipated_energy",
       ]),
+      ...numbersOf(single(twist), ["torsion_arm"]),
     ],
     charts: [
       shearStressChart("Fields", field, inputs.mu, edges),
@@ -223,6 +233,10 @@ export async function solvePush(inputs, query) {
         "Curve", "Stick radius against tangential force", curve, ["tangential_force", "stick_radius"], size,
       ),
       fieldChart("Fields", "Slip", "slip", edges, field.radius, [{ name: "slip", y: slip }]),
+      {
+        request: "Twist", title: "Twist instead: torque against rotation", x: QUANTITIES.rotation, y: QUANTITIES.torque,
+        traces: [{ name: "torque", x: [0, ...twist.rotation], y: [0, ...twist.torque] }],
+      },
     ],
   };
 }

@@ -25,6 +25,8 @@ const OWN_UNITS = {
   energy: { name: "J", factors: prefixed("J") },
   s: { name: "s", factors: { s: 1, ms: 1e-3, "µs": 1e-6, ns: 1e-9 } },
   "m/s": { name: "m/s", factors: { "m/s": 1, "mm/s": 1e-3, "µm/s": 1e-6, "nm/s": 1e-9 } },
+  "N·m": { name: "N·m", factors: { "N·m": 1, "N·mm": 1e-3, "µN·m": 1e-6, "nN·m": 1e-9 } },
+  rad: { name: "rad", factors: { rad: 1, mrad: 1e-3, "µrad": 1e-6 } },
   "N/m": { name: "N/m", factors: { "N/m": 1 } },
   kg: { name: "kg", factors: { kg: 1 } },
   "kg/m³": { name: "kg/m³", factors: { "kg/m³": 1 } },
