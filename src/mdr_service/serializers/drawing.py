@@ -66,6 +66,8 @@ def draw(
     size : width and height [mm]; by default the usual size.
     units : units that the labels name.
     """
+    # The parts of a figure refer to it, so that the one before would stay beside this one.
+    gc.collect()
     usual = _WIDTH, FRAME + len(panels) * _PANEL
     width, height = size or usual
     is_small = width < usual[0] or height < usual[1]
@@ -95,9 +97,6 @@ def draw(
         # A map within a drawing needs the pixels of a picture of the usual width, however large it is.
         dpi = _DPI if name == "png" else _DPI * min(1.0, _WIDTH / max(width, height))
         figure.savefig(content, format=name, metadata=_METADATA[name], dpi=dpi)
-    # Figures refer to themselves, and the next one may be drawn before they are collected.
-    figure.clear()
-    gc.collect()
     return content.getvalue()
 
 
