@@ -71,8 +71,8 @@ class ContactAnswer(SolvedAnswer):
     mean_pressure: list[float | None] = _pressure(f"Mean pressure, F_N/(π a²); {_NULL}")
     maximum_pressure: list[float | None] = _pressure(f"Maximum pressure, the largest p(r); {_NULL}")
     normal_stiffness: list[float | None] = _stiffness(
-        "Normal stiffness, dF_N/dd = 2 E* a; of an adhesive contact at constant w, null at pull-off "
-        "under a prescribed depth, where it is infinite"
+        "Normal stiffness, dF_N/dd = 2 E* a; of an adhesive contact at constant w, null at "
+        "pull-off under a prescribed depth, where it is infinite"
     )
     elastic_energy: list[float] = _energy("Elastic energy, of the contact")
     data_error: list[float] = _number(

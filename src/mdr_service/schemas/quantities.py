@@ -49,7 +49,7 @@ def quantity(dimension: str, meaning: str, **field: Any) -> Any:
 
 
 def heading(description: str) -> str:
-    """Return the label of a quantity: its description up to a comma, semicolon, colon or bracket."""
+    """Return the label of a quantity: its description up to a punctuation mark or a bracket."""
     return re.split(r"[,;:]| ?\[", description)[0].replace("(r)", "")
 
 

@@ -94,7 +94,7 @@ def draw(
         if named or title:
             style: Any = {"loc": "outside upper center", "ncols": 1 if is_small else 3}
             figure.legend(list(named.values()), list(named), title=title or None, **style)
-        # A map within a drawing needs the pixels of a picture of the usual width, however large it is.
+        # However large a drawing is, its maps have the pixels of the usual width.
         dpi = _DPI if name == "png" else _DPI * min(1.0, _WIDTH / max(width, height))
         figure.savefig(content, format=name, metadata=_METADATA[name], dpi=dpi)
     return content.getvalue()
