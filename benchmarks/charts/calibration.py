@@ -1,9 +1,9 @@
 """Calibration chart: true error over stated error, for every query whose error is stated.
 
 `make chart-calibration`. References are the banks of the tests (mpmath), independent evaluations of
-the twist, finer solutions of impacts and of wear, and bodies behind tables. A query is one case: its
-error and its estimate are the largest over its results. Errors below half a unit in the last place
-are not resolved by the references, and count as zero.
+the twist, and finer solutions of impacts and of wear. A query is one case: its error and its
+estimate are the largest over its results. Errors below half a unit in the last place are not
+resolved by the references, and count as zero.
 """
 
 from __future__ import annotations
