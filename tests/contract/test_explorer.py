@@ -391,7 +391,7 @@ def test_narrow_worn_annulus_fills_its_chart(visit: Visit) -> None:
 def test_wear_coefficient_is_a_worn_volume_per_energy(visit: Visit) -> None:
     visit.open("?tab=wear")
     visit.fill("wear", "2e-4")
-    assert visit.page.locator(".field[data-key=wear]").inner_text().endswith("mm³/J")
+    assert visit.page.locator(".field[data-key=wear] .unit").inner_text() == "mm³/J"
     assert json.loads(request(visit, "Evolution"))["wear_coefficient"] == 2e-13
 
 
