@@ -55,6 +55,18 @@ def test_tab_draws_its_charts_and_passes_axe(visit: Visit, tab: str) -> None:
         assert [(each["id"], each["nodes"][0]["html"]) for each in findings] == []
 
 
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_catalogue_lists_kinds_and_limits_and_passes_axe(visit: Visit, scheme: str) -> None:
+    visit.page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+    visit.page.goto(f"{visit.address}explorer/catalogue.html")
+    visit.page.locator("#limits tbody tr").first.wait_for()
+    kinds = httpx.get(f"{visit.address}v1/profiles").json()["profiles"]
+    assert visit.page.locator("#kinds tbody tr").count() == len(kinds)
+    limits = httpx.get(f"{visit.address}v1/limits").json()
+    assert visit.page.locator("#limits tbody tr").count() == len(limits)
+    assert Axe().run(visit.page).response["violations"] == []
+
+
 def test_every_profile_kind_is_drawn(visit: Visit) -> None:
     visit.open()
     kinds = visit.page.locator("#kind option").evaluate_all("all => all.map(one => one.value)")
