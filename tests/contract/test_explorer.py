@@ -457,6 +457,7 @@ def test_strength_follows_the_material(visit: Visit) -> None:
     assert visit.page.get_attribute("#field-yield1", "placeholder") == "250"
     # The moduli of no listed material leave the strength open.
     visit.fill("e1", "190,5")
+    assert visit.page.input_value("#field-material-1") == "Custom"
     assert visit.page.get_attribute("#field-yield1", "placeholder") == "needed"
     assert visit.number("Yield begins at, von Mises") == "needs a yield strength"
 
