@@ -16,7 +16,7 @@ from scipy.sparse.linalg import spsolve
 from mdr_core.abel.slope_pieces import heights
 from mdr_core.profiles.table_points import TablePoints
 from mdr_core.profiles.truncated import RoundedPunch, TruncatedCone
-from mdr_core.typing import Array, Flags
+from mdr_core.typing import Array, Flags, Indices
 
 # Largest degree of the slope: the error of 20 points of a sphere is a tenth of that of a cubic.
 _DEGREE: Final = 5
@@ -106,6 +106,12 @@ class TableBasis:
         self.heights = np.column_stack([splines[:, 1:], *jumps, np.ones_like(x), splines[:, 0]])
 
     @cached_property
+    def weighted(self) -> tuple[Array, Array]:
+        """Heights of the columns, and of the points, times the weights of the points."""
+        weight = self.points.weight
+        return self.heights * weight[:, None], self.points.y * weight
+
+    @cached_property
     def places(self) -> Array:
         """Coefficients of the slope x."""
         return sliding_window_view(self.t[1:-1], self.degree).mean(axis=1)
@@ -117,6 +123,11 @@ class TableBasis:
         free[self.size : -2 : 2] = True
         free[-2] = True
         return free
+
+    def closed(self, open_jumps: Flags) -> Indices:
+        """Columns of the slopes that do not jump."""
+        columns = np.append(-1, np.arange(self.size - 1, self.heights.shape[1] - 2, 2))
+        return columns[~open_jumps]
 
     def padded(self, splines: Array) -> Array:
         """Return rows over the splines (n, size) as rows over all columns."""
@@ -139,21 +150,22 @@ class TableBasis:
         """Rows of which the sum of squares is the roughness."""
         return self.padded(self._derivative())
 
-    def by_roughness(self, *, sharp: bool) -> tuple[Array, Array]:
+    def by_roughness(self, open_jumps: Flags) -> tuple[Array, Array]:
         """Coefficients (columns, n) of what has no roughness, and of the others.
 
         Each of the others has one row of the roughness that is 1.
 
         Parameters
         ----------
-        sharp : the slope may be positive at the axis.
+        open_jumps : where the slope may jump: at the axis, and at each break.
         """
         matrix = BSpline.design_matrix(self.places, self.t, self.degree)
-        powers = np.arange(0 if sharp else 1, self.order)
+        powers = np.arange(0 if open_jumps[0] else 1, self.order)
         smooth = self.padded(
             spsolve(matrix.tocsc(), self.places[:, None] ** powers).reshape(self.size, -1).T
         )
-        explicit = np.eye(self.heights.shape[1])[self.size - 1 : -1]
+        own = np.arange(self.size - 1, self.heights.shape[1] - 1)
+        explicit = np.eye(self.heights.shape[1])[np.setdiff1d(own, self.closed(open_jumps))]
         triangle = np.vstack([np.eye(self.order, self.size), self._derivative()])
         rough = solve_triangular(triangle, np.eye(self.size)[:, self.order :], lower=True)
         return np.vstack([smooth, explicit]).T, self.padded(rough.T).T

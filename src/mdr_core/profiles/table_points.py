@@ -21,8 +21,6 @@ from mdr_core.typing import Array
 EXACT_SCATTER: Final = 1e-8
 # Gaps between radii that are merged, over their mean spacing at equal radii.
 _SAME: Final = 1e-2
-# Neighbours on each side from which a height is predicted.
-_NEIGHBOURS: Final = 3
 # Rounded numbers: largest unit over the step between neighbours, and largest number of units: a
 # smaller one is below `EXACT_SCATTER`.
 _FINEST_STEP, _MOST_UNITS = 0.05, round(1 / (np.sqrt(12) * EXACT_SCATTER))
@@ -43,6 +41,8 @@ class TablePoints:
     breaks: tuple[float, ...]
     scale: tuple[float, float]
     """Last radius and height [length]."""
+    rounding: float
+    """Standard error of the heights by the digits of the numbers."""
 
 
 def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
@@ -64,14 +64,17 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
         raise InputError(("profile", "f"), f"the heights fall away from the axis: {advice}")
     weight = np.sqrt(count)
     of_radius, of_height = _rounding(given[0], given[1], x.size) if x.size > 2 else (0.0, 0.0)
+    rounding = 0.0
     if max(of_radius, of_height) > EXACT_SCATTER:
         # An error of the radius is one of the height on a slope.
         error = np.hypot(of_radius * np.gradient(y, x), of_height)
         # On a flat an error of the radius is none of the height.
         typical = float(np.median(error[error > 0]))
         weight = weight * typical / np.maximum(error, _LEAST_ERROR * typical)
+        # Heights with all digits tell of no rounding, nor do those on a grid.
+        rounding = typical * (0 < np.sqrt(12) * of_height < _FINEST_STEP / x.size)
     scaled = tuple(b / end for b in breaks)
-    return TablePoints(x, y, weight, scaled, (end, height))
+    return TablePoints(x, y, weight, scaled, (end, height), rounding)
 
 
 def off_axis(r: Array, f: Array) -> str:
@@ -83,23 +86,6 @@ def off_axis(r: Array, f: Array) -> str:
         return ""
     reverse = "" if bend > 0 else ", and reverse the sign of the heights"
     return f"if r is the position on a scan, subtract that of the axis, near {axis:.4g}{reverse}"
-
-
-def scatter(points: TablePoints) -> float:
-    """Median deviation of the points from the polynomial through their neighbours, over its norm.
-
-    Neither smooth shapes nor a few kinks have one; noise and rounding have.
-    """
-    x, y = points.x, points.y
-    around = np.delete(np.arange(-_NEIGHBOURS, _NEIGHBOURS + 1), _NEIGHBOURS)
-    own = np.arange(_NEIGHBOURS, x.size - _NEIGHBOURS)
-    near = own[:, None] + around
-    gaps = x[near][:, :, None] - x[near][:, None, :]
-    gaps[:, range(around.size), range(around.size)] = 1.0
-    to_own = x[own, None] - x[near]
-    weights = to_own.prod(axis=1)[:, None] / (to_own * gaps.prod(axis=2))
-    off = y[own] - (weights * y[near]).sum(axis=1)
-    return float(np.median(np.abs(off) / np.sqrt(1 + np.square(weights).sum(axis=1))))
 
 
 def _rounding(x: Array, y: Array, count: int) -> tuple[float, float]:
