@@ -24,6 +24,9 @@ _DEGREE: Final = 5
 _ROUGH: Final = 3
 # Largest number of points that are knots.
 _KNOTS: Final = 120
+# Least radius of a knot over the last one: the third derivative over a smaller step would be
+# rounding error of the heights.
+_LEAST_KNOT: Final = 1e-5
 # Points of a piece at which the sign of an interpolant is tested.
 _TESTED: Final = 8
 
@@ -48,6 +51,8 @@ class TableFit:
     """Break over the last radius, and possible deviations of both jumps, shape (2, n)."""
     scale: tuple[float, float]
     """Last radius and height of the table [length]."""
+    rival: float
+    """Probability of a tip of the other kind, sharp or smooth [1]."""
 
     def spread_at(self, radius: Array) -> tuple[Array, Array, Array]:
         """Sizes of the errors of g, int_0^a x g' dx and int_0^a g dx that the points leave open."""
@@ -88,9 +93,10 @@ class TableBasis:
     """
 
     def __init__(self, points: TablePoints) -> None:
-        self.degree = k = min(max(points.x.size - 2 - 2 * len(points.breaks), 2), _DEGREE)
+        x = np.append(0.0, points.x[points.distinct & (points.x > _LEAST_KNOT)])
+        count = x.size - (points.x[0] > 0)
+        self.degree = k = min(max(count - 2 - 2 * len(points.breaks), 2), _DEGREE)
         self.order = min(_ROUGH, k)
-        x = points.x if points.x[0] == 0 else np.append(0.0, points.x)
         knots = x[np.unique(np.linspace(0, x.size - 1, min(x.size, _KNOTS)).round().astype(int))]
         if knots.size > 2 * _DEGREE:
             # Points beside which there is no knot, not the roughness, bend the slope at the end.
@@ -105,11 +111,16 @@ class TableBasis:
         jumps = [column for each in past for column in (each, each * each / 2)]
         self.heights = np.column_stack([splines[:, 1:], *jumps, np.ones_like(x), splines[:, 0]])
 
-    @cached_property
-    def weighted(self) -> tuple[Array, Array]:
+        self.weighted = self.heights * points.weight[:, None], points.y * points.weight
         """Heights of the columns, and of the points, times the weights of the points."""
-        weight = self.points.weight
-        return self.heights * weight[:, None], self.points.y * weight
+
+    @cached_property
+    def triangle(self) -> tuple[Array, Array]:
+        """Orthogonal columns (points, n) and triangle of the heights of `by_roughness`, weighted.
+
+        A product with heights before the triangle has no cancellation: their coefficients rise.
+        """
+        return np.linalg.qr(self.weighted[0] @ np.hstack(self.by_roughness))
 
     @cached_property
     def places(self) -> Array:
@@ -124,10 +135,9 @@ class TableBasis:
         free[-2] = True
         return free
 
-    def closed(self, open_jumps: Flags) -> Indices:
-        """Columns of the slopes that do not jump."""
-        columns = np.append(-1, np.arange(self.size - 1, self.heights.shape[1] - 2, 2))
-        return columns[~open_jumps]
+    def closed(self, jumps: Flags) -> Indices:
+        """Columns of the slopes that do not jump; `jumps` at the axis and at each break."""
+        return np.append(-1, np.arange(self.size - 1, self.heights.shape[1] - 2, 2))[~jumps]
 
     def padded(self, splines: Array) -> Array:
         """Return rows over the splines (n, size) as rows over all columns."""
@@ -145,30 +155,32 @@ class TableBasis:
             rows = np.diff(rows, axis=0) / span[:, None]
         return rows * np.sqrt(span)[:, None]
 
-    @property
+    @cached_property
     def roughness(self) -> Array:
         """Rows of which the sum of squares is the roughness."""
         return self.padded(self._derivative())
 
-    def by_roughness(self, open_jumps: Flags) -> tuple[Array, Array]:
+    def grading(self, start: float) -> Array:
+        """Weight of each row of a roughness that is graded from the radius `start` on."""
+        o = self.order
+        support = sliding_window_view(self.t[o:-o], self.degree - o + 2).mean(axis=1)
+        return ((support + start) / (1 + start)) ** (o - 0.5)
+
+    @cached_property
+    def by_roughness(self) -> tuple[Array, Array]:
         """Coefficients (columns, n) of what has no roughness, and of the others.
 
-        Each of the others has one row of the roughness that is 1.
-
-        Parameters
-        ----------
-        open_jumps : where the slope may jump: at the axis, and at each break.
+        The first have jumps of the slope at the axis and at each break before them. Each of the
+        others has one row of the roughness that is 1.
         """
         matrix = BSpline.design_matrix(self.places, self.t, self.degree)
-        powers = np.arange(0 if open_jumps[0] else 1, self.order)
-        smooth = self.padded(
-            spsolve(matrix.tocsc(), self.places[:, None] ** powers).reshape(self.size, -1).T
-        )
-        own = np.arange(self.size - 1, self.heights.shape[1] - 1)
-        explicit = np.eye(self.heights.shape[1])[np.setdiff1d(own, self.closed(open_jumps))]
+        powers = self.places[:, None] ** np.arange(self.order)
+        smooth = self.padded(spsolve(matrix.tocsc(), powers).reshape(self.size, -1).T)
+        own = np.eye(self.heights.shape[1])[self.size - 1 : -1]
         triangle = np.vstack([np.eye(self.order, self.size), self._derivative()])
         rough = solve_triangular(triangle, np.eye(self.size)[:, self.order :], lower=True)
-        return np.vstack([smooth, explicit]).T, self.padded(rough.T).T
+        ordered = np.vstack([smooth[:1], own[:-1:2], smooth[1:], own[1::2], own[-1:]])
+        return ordered.T, self.padded(rough.T).T
 
     def spline(self, coefficients: Array) -> BSpline:
         """Slope, or several, of coefficients over all columns."""
@@ -193,8 +205,8 @@ class TableBasis:
         """Heights less those of the points."""
         return self.heights @ coefficients - self.points.y
 
-    def fit(self, coefficients: Array, spread: Array) -> TableFit:
-        """Return the fit of coefficients; `spread` are possible deviations of them."""
+    def fit(self, coefficients: Array, spread: Array, rival: float) -> TableFit:
+        """Return the fit of coefficients. Parameters: see `TableFit`."""
         end, height = self.points.scale
         polynomials: Any = PPoly.from_spline(self.spline(coefficients).tck)
         rows = polynomials.c[::-1, np.diff(polynomials.x) > 0]
@@ -215,6 +227,7 @@ class TableBasis:
             (possible.antiderivative(), possible.antiderivative(2)),
             tuple(zip(self.points.breaks, possible_jumps, strict=True)),
             self.points.scale,
+            rival,
         )
 
 

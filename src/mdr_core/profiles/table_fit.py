@@ -1,10 +1,11 @@
 """Equivalent profile of a table: the likeliest admissible slope g' for the points.
 
 The slope is a quintic spline in x/R, with the closed images of jumps of slope and curvature at
-declared breaks. It is a smooth process of unknown roughness, the points deviate by a noise that is
-unknown or stated, and their likelihood decides on both, on the scale of the roughness, and on jumps
-of the slope at the axis and at breaks. Points that are met are those of which the noise is that of
-rounding. A non-negative least-squares problem keeps the profile admissible.
+declared breaks. Its third derivative is a random process of unknown size, and the heights deviate
+by a noise that is stated or unknown. One restricted likelihood decides on both sizes, on a process
+that grows towards the axis or not, and on jumps of the slope at the axis and at breaks. Heights
+without noise are the limit of a noise of rounding errors. A non-negative least-squares problem
+keeps the profile admissible. The error of the data is that of all likely choices together.
 
 Source: notes, §5.
 """
@@ -23,21 +24,30 @@ from mdr_core.profiles.table_basis import TableBasis, TableFit, root_mean_square
 from mdr_core.profiles.table_points import TablePoints, cleaned, off_axis
 from mdr_core.typing import Array, Flags, Indices
 
-# Weights of the roughness that are tried, over the one that halves the smoothest bend.
+# Weights of the roughness, noise over roughness squared, over the one that halves the smoothest
+# bend: from heights that are met to a parabola.
 _WEIGHTS: Final = 10.0 ** np.arange(-40, 6.1, 0.5)
-# Of these, the lowest that a fit by rows resolves, and one that it resolves well.
-_LEAST_WEIGHT, _RESOLVED = 1e-21, 1e-10
-# Twice the logarithm of the odds against a jump of the slope, and odds that are negligible.
-_JUMP, _NEGLIGIBLE = 2.0, 1e-3
-# Increase of twice the logarithm of the likelihood that tells nothing.
+# Smallest weight in a problem of rows, whose roots have 16 digits.
+_LEAST_WEIGHT: Final = 1e-21
+# Smallest weight that is preferred among equally likely ones: its root has digits to spare.
+_RESOLVED: Final = 1e-10
+# Radius, over the first one, from which a graded roughness grows; infinity is an even one.
+_GRADINGS: Final = (np.inf, 0.1)
+# Twice the logarithm of the odds against one jump of the slope: a parameter more.
+_JUMP: Final = 2.0
+# Likelihood over the largest one below which a choice has no share in the error.
+_NEGLIGIBLE: Final = 1e-3
+# Change of twice the logarithm of the likelihood that decides nothing: 5 % of the odds.
 _SAME: Final = 0.1
-# Smallest jump of the slope, over the mean slope of the table.
+# Smallest jump of the slope, over the mean slope of the table. Below, it replaces a jump of a
+# higher derivative.
 _LEAST_JUMP: Final = 1e-3
-# Singular values of directions that the points do not see, over the largest.
+# Singular values of directions that the points do not show, over the largest.
 _UNSEEN: Final = 1e-8
-# Standard deviation of heights that are met, over their range: rounding errors of the fit.
+# Standard deviation of heights that are met, over their range: rounding errors of the fit, by
+# trial with 50 to 500 points of r^2 and r^3.
 _LEAST_SIGMA: Final = 32 * ADJACENT
-# Quantile of the error that is estimated: two standard deviations.
+# Quantile of the error of the data: two standard deviations of a normal distribution.
 _QUANTILE: Final = 0.97725
 # Lowest g'/x, over that of the paraboloid through the last point: g increases strictly.
 _FLOOR: Final = 1e-9
@@ -81,35 +91,38 @@ def _likeliest(points: TablePoints, uncertainty: float | None) -> TableFit:
 
     Parameters
     ----------
-    uncertainty : of the heights over their range; None to estimate it.
+    uncertainty : standard uncertainty of the heights over their range; None to estimate it.
     """
     basis = TableBasis(points)
-    none = np.zeros(1 + len(points.breaks), dtype=bool)
-    tried = [_Model(basis, uncertainty, none)]
-    best = tried[0]
-    for _ in none:
-        one_more = [best.jumps | (np.arange(none.size) == i) for i in np.flatnonzero(~best.jumps)]
-        tried += [_Model(basis, uncertainty, jumps) for jumps in one_more]
-        # A jump that no one sees makes up for one of a higher derivative.
+
+    def models(jumps: Flags) -> "list[_Model]":
+        return [_Model(basis, uncertainty, jumps, grading) for grading in _GRADINGS]
+
+    tried = models(np.zeros(1 + len(points.breaks), dtype=bool))
+    before, best = None, min(tried, key=lambda each: each.least)
+    while best is not before:
+        for i in np.flatnonzero(~best.jumps):
+            tried += models(best.jumps | (np.arange(best.jumps.size) == i))
         seen = [each for each in tried if each.smallest_jump > _LEAST_JUMP]
         before, best = best, min(seen, key=lambda each: each.least)
-        if best is before:
-            break
-    found, least = None, np.inf
+    found: tuple[float, Array, _Model, float] | None = None
     for each in sorted(seen, key=lambda each: each.least):
-        if each.least >= least:
+        if found and each.least >= found[0]:
             break
-        coefficients, noise = _admissible(basis, each)
-        # What no admissible shape meets is noise.
-        score = each.least + 2 * max(each.left_over, 1) * np.log(noise)
-        if found is None or score < least:
-            found, least, best, more = coefficients, score, each, noise
-    spread = _spread(tried, best, blind=points.x[0] > 0)
-    if more > 1:
-        noisier = best.weights.searchsorted(best.weights[best.at] * more**2, side="right") - 1
-        amount = np.square(more * best.sigma[best.at] / best.sigma[noisier])
-        spread = np.hstack([spread, best.posterior(np.array([noisier]), amount)])
-    return basis.fit(found, spread)
+        coefficients, excess = _admissible(basis, each)
+        # A deviation that no admissible shape removes is noise.
+        score = each.least + 2 * max(each.left_over, 1) * np.log(excess)
+        if not found or score < found[0]:
+            found = score, coefficients, each, excess
+    assert found
+    _, coefficients, best, excess = found
+    spread, rival = _spread(tried, best, blind=points.x[0] > basis.knots[1] / 2)
+    if excess > 1:
+        at = np.array([best.at])
+        noisier = best.weights.searchsorted(best.weights[at] * excess**2, side="right") - 1
+        amount = np.square(excess * best.sigma[at] / best.sigma[noisier])
+        spread = np.hstack([spread, best.posterior(noisier, amount)])
+    return basis.fit(coefficients, spread, rival)
 
 
 def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
@@ -124,48 +137,48 @@ def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
         jumps[np.abs(jumps) < _FLOOR] = 0.0
         floor = 0.0
     # Where the slope falls by a step, g' is infinite and negative beyond it.
-    if min(jumps.min(initial=0.0), coefficients[-1]) >= 0:
-        if basis.slopes(coefficients).min() > floor:
-            return coefficients, 1.0
-    weight = basis.points.weight
-    coefficients = _not_negative(basis, chosen)
-    off = root_mean_square(weight * basis.deviation(coefficients))
-    if off > _NO_DISC:
-        # The likeliest weight of less noise, with which most shapes are admissible.
-        chosen.at = int(np.argmin(np.where(chosen.sigma < _NO_DISC / 4, chosen.score, np.inf)))
+    if (
+        min(jumps.min(initial=0.0), coefficients[-1]) >= 0
+        and basis.slopes(coefficients).min() > floor
+    ):
+        return coefficients, 1.0
+    for noise in (np.inf, _NO_DISC / 4):
+        # Most shapes are admissible at the likeliest weight of less noise.
+        score = np.where(chosen.sigma < noise, chosen.score, np.inf)
+        chosen.at = chosen.at if noise == np.inf else int(np.argmin(score))
         coefficients = _not_negative(basis, chosen)
-        off = root_mean_square(weight * basis.deviation(coefficients))
+        off = root_mean_square(basis.points.weight * basis.deviation(coefficients))
+        if off <= _NO_DISC:
+            break
     return coefficients, max(off / chosen.sigma[chosen.at], 1.0)
 
 
-def _spread(tried: "list[_Model]", best: "_Model", *, blind: bool) -> Array:
-    """Return possible deviations of the coefficients, shape (columns, n).
+def _spread(tried: "list[_Model]", best: "_Model", *, blind: bool) -> tuple[Array, float]:
+    """Return possible deviations of the coefficients (columns, n), and the odds of another tip.
 
-    Two standard deviations of the posterior of all models and weights, and the influence of each
-    point times the excess of its leave-one-out residual over the one expected.
+    The deviations are two standard deviations of the posterior of all models and weights, and the
+    influence of each point times the excess of its residual, when it is left out, over the
+    expected one. The odds are those of the tip, sharp or smooth, that was not chosen.
 
     Parameters
     ----------
-    blind : without a point on the axis, which alone tells a sharp tip from one that is smooth.
+    blind : True without a point on the axis, which alone tells a sharp tip from a smooth one.
     """
-    least = min(each.least for each in tried)
-    of_tip = [
-        min((each.least for each in tried if each.jumps[0] == sharp), default=np.inf)
-        for sharp in (False, True)
-    ]
-    odds = [
-        np.exp(((of_tip[int(each.jumps[0])] if blind else least) - each.score) / 2)
-        for each in tried
-    ]
+    least = {
+        sharp: min((each.least for each in tried if blind is False or each.jumps[0] == sharp))
+        for sharp in {bool(each.jumps[0]) for each in tried}
+    }
+    odds = [np.exp((least[bool(each.jumps[0])] - each.score) / 2) for each in tried]
     total, center = sum(each.sum() for each in odds), best.mean(np.array([best.at]))
-    parts = [2 * best.excess()]
+    parts, rival = [2 * best.excess()], 0.0
     for each, own in zip(tried, odds, strict=True):
+        rival += own.sum() / total * (each.jumps[0] != best.jumps[0])
         likely = np.flatnonzero(own > _NEGLIGIBLE)
         if likely.size:
             share = own[likely] / total
             off = each.mean(likely) - center
             parts += [each.posterior(likely, share), 2 * off * np.sqrt(share)]
-    return np.linalg.qr(np.hstack(parts).T, mode="r").T
+    return np.linalg.qr(np.hstack(parts).T, mode="r").T, float(rival)
 
 
 def _not_negative(basis: TableBasis, chosen: "_Model") -> Array:
@@ -173,12 +186,11 @@ def _not_negative(basis: TableBasis, chosen: "_Model") -> Array:
 
     Source: lawson-hanson, Ch. 23.
     """
-    floor, weight = np.zeros(basis.heights.shape[1]), basis.points.weight
+    floor, (heights, goal) = np.zeros(basis.heights.shape[1]), basis.weighted
     floor[: basis.size - 1] = 4 * _FLOOR * basis.places[1:]
+    system = np.vstack([heights, chosen.rows])
+    right = np.append(goal, np.zeros(len(chosen.rows))) - system @ floor
     closed = ~np.isnan(chosen.given)
-    system = np.vstack([basis.heights * weight[:, None], chosen.rows])
-    right = np.append(basis.points.y * weight, np.zeros(len(chosen.rows)))
-    right -= system @ floor
     bound, found = ~basis.free & ~closed, floor
     for with_bends in (False, True):
         # A curvature that drops at a break may bring the slope below zero: then it must not drop.
@@ -206,9 +218,9 @@ def _by_rows(basis: TableBasis, chosen: "_Model", given: Array) -> Array:
     ----------
     given : coefficients that are known, NaN for the others.
     """
-    weight = basis.points.weight
-    system = np.vstack([basis.heights * weight[:, None], chosen.rows])
-    right = np.append(basis.points.y * weight, np.zeros(len(chosen.rows)))
+    heights, goal = basis.weighted
+    system = np.vstack([heights, chosen.rows])
+    right = np.append(goal, np.zeros(len(chosen.rows)))
     order = np.argsort(-np.abs(system).max(axis=1), kind="stable")
     free = np.isnan(given)
     result = np.where(free, 0.0, given)
@@ -223,50 +235,56 @@ def _by_rows(basis: TableBasis, chosen: "_Model", given: Array) -> Array:
 
 
 class _Model:
-    """Penalised least-squares problem for every weight of the roughness, with its likelihood.
+    """Likelihood and solutions of a penalised least-squares problem for every weight.
 
     Slopes without roughness, of which nothing is known beforehand, are separated from those that
     are rough, so that both are as accurate as the heights, whatever the weight.
 
-    Source: elden, wahba.
+    Source: elden; wahba.
 
     Parameters
     ----------
-    jumps : see `TableBasis.by_roughness`.
+    uncertainty : standard uncertainty of the heights over their range; None to estimate it.
+    jumps : True where the slope may jump: at the axis, and at each break.
+    grading : radius over the first one from which the roughness is graded; see `_GRADINGS`.
     """
 
-    def __init__(self, basis: TableBasis, uncertainty: float | None, jumps: Flags) -> None:
-        self.basis, self.jumps = basis, jumps
-        matrix, goal = basis.weighted
-        smooth, rough = basis.by_roughness(jumps)
-        self.seen, sizes, right = np.linalg.svd(matrix @ smooth, full_matrices=False)
+    def __init__(
+        self, basis: TableBasis, uncertainty: float | None, jumps: Flags, grading: float
+    ) -> None:
+        self.basis, self.jumps, count = basis, jumps, basis.points.x.size
+        grade = basis.grading(grading * basis.knots[1]) if grading < np.inf else 1.0
+        self.graded = basis.roughness * np.reshape(grade, (-1, 1))
+        smooth, rough = basis.by_roughness
+        self.turn, triangle = basis.triangle
+        bent = triangle[:, smooth.shape[1] :] / grade
+        used = np.append(jumps, np.full(smooth.shape[1] - jumps.size, True)).nonzero()[0]
+        goal = self.turn.T @ basis.weighted[1]
+        seen, sizes, right = np.linalg.svd(triangle[:, used], full_matrices=False)
         # Few points leave directions open.
         known = sizes > _UNSEEN * sizes[0]
-        self.seen, sizes = self.seen[:, known], sizes[known]
-        self.smooth = smooth @ (right[known].T / sizes)
-        bent = matrix @ rough
+        self.seen, sizes = seen[:, known], sizes[known]
+        self.smooth = smooth[:, used] @ (right[known].T / sizes)
         shared = self.seen.T @ bent
         base, triangle = np.linalg.qr(bent - self.seen @ shared)
         left, size, right = np.linalg.svd(triangle)
-        self.left_over = max(basis.points.x.size - sizes.size, 0)
+        self.left_over = max(count - sizes.size, 0)
         kept = min(size.size, self.left_over)
         self.left, self.size = base @ left[:, :kept], size[:kept]
-        turned = (rough - self.smooth @ shared) @ right.T
+        turned = (rough / grade - self.smooth @ shared) @ right.T
         self.rough, self.open = turned[:, :kept], turned[:, kept:]
         self.fitted = self.seen.T @ goal
-        goal = goal - self.seen @ self.fitted
         self.part = self.left.T @ goal
-        self.rest = (goal - self.left @ self.part) * (kept < self.left_over)
-        size2 = np.square(self.size)
+        rest = basis.weighted[1] - self.turn @ (self.seen @ self.fitted + self.left @ self.part)
+        self.rest = rest * (kept < self.left_over)
         self.weights = max(float(np.square(size).max(initial=0.0)), _UNSEEN**2) * _WEIGHTS
-        share = self.weights[:, None] / np.add.outer(self.weights, size2)
+        share = self.weights[:, None] / np.add.outer(self.weights, np.square(self.size))
         whole = share @ np.square(self.part) + np.square(self.rest).sum()
         least = max(basis.points.rounding, _LEAST_SIGMA)
-        self.stated = uncertainty is not None
+        self.quantile, self.sigma = 2.0, np.full(whole.size, max(uncertainty or 0.0, _LEAST_SIGMA))
         if uncertainty is None:
+            self.quantile = stdtrit(max(self.left_over, 1), _QUANTILE)
             self.sigma = np.sqrt(np.maximum(whole / max(self.left_over, 1), least**2))
-        else:
-            self.sigma = np.full(whole.size, max(uncertainty, _LEAST_SIGMA))
         variance = np.square(self.sigma)
         self.score = (
             whole / variance
@@ -276,19 +294,22 @@ class _Model:
             + _JUMP * jumps.sum()
             + variance / _NO_DISC**2
         )
-        """-2 log of the likelihood, for unit densities of what is not rough."""
+        """-2 log of the likelihood of each weight, for unit densities of slopes without roughness.
+
+        The last term keeps a noise that would be rejected from being likely.
+        """
         if self.left_over == 0:
             # No point is left to tell the roughness: it is that of the unit.
             unit = np.arange(whole.size) == np.argmin(np.abs(np.log(variance / self.weights)))
             self.score = np.where(unit, self.score, np.inf)
         self.least = float(self.score.min())
-        # Points that are met tell no small weight from another: take one that rows resolve.
+        # Heights that are met tell no small weight from another.
         likely = np.flatnonzero(self.score <= self.least + _SAME)
         self.at = int(likely[min(np.sum(_WEIGHTS[likely] < _RESOLVED), likely.size - 1)])
 
     @property
     def smallest_jump(self) -> float:
-        """Smallest of the jumps of the slope, over the mean slope of the table."""
+        """Smallest jump of the slope over the mean slope of the table; infinite without one."""
         jumps = self.mean(np.array([self.at]))[self.basis.closed(~self.jumps), 0]
         return float(np.abs(jumps).min(initial=np.inf))
 
@@ -303,7 +324,7 @@ class _Model:
     def rows(self) -> Array:
         """Rows of the roughness."""
         weight = max(self.weights[self.at], self.weights[-1] / _WEIGHTS[-1] * _LEAST_WEIGHT)
-        return np.sqrt(weight) * self.basis.roughness
+        return np.sqrt(weight) * self.graded
 
     def mean(self, at: Indices) -> Array:
         """Coefficients for weights of the roughness, shape (columns, n)."""
@@ -312,21 +333,24 @@ class _Model:
 
     def posterior(self, at: Indices, share: Array) -> Array:
         """Possible deviations of the coefficients, for a mixture of weights. Source: wahba."""
-        size2 = np.concatenate([np.square(self.size), np.zeros(self.open.shape[1])])
+        size2 = np.append(np.square(self.size), np.zeros(self.open.shape[1]))
         variance = np.square(self.sigma[at]) * share
         bent = np.sqrt(variance @ (1 / np.add.outer(self.weights[at], size2)))
         smooth = np.sqrt(variance.sum()) * self.smooth
-        quantile = 2.0 if self.stated else stdtrit(max(self.left_over, 1), _QUANTILE)
-        return quantile * np.hstack([smooth, np.hstack([self.rough, self.open]) * bent])
+        return self.quantile * np.hstack([smooth, np.hstack([self.rough, self.open]) * bent])
 
     def excess(self) -> Array:
-        """Influence of each point times the excess of its residual when it is left out."""
+        """Influence of each point times the excess of its residual when it is left out.
+
+        Source: rippa.
+        """
         sum2 = np.square(self.size) + self.weights[self.at]
         share = self.weights[self.at] / sum2
-        influence = self.smooth @ self.seen.T + self.rough * (self.size / sum2) @ self.left.T
-        residual = self.rest + self.left @ (share * self.part)
-        outside = 1 - np.square(self.seen).sum(axis=1) - np.square(self.left).sum(axis=1)
-        own = np.square(self.left) @ share + np.where(outside > _UNSEEN, outside, 0.0)
+        seen, left = self.turn @ self.seen, self.turn @ self.left
+        influence = self.smooth @ seen.T + self.rough * (self.size / sum2) @ left.T
+        residual = self.rest + left @ (share * self.part)
+        outside = 1 - np.square(seen).sum(axis=1) - np.square(left).sum(axis=1)
+        own = np.square(left) @ share + np.where(outside > _UNSEEN, outside, 0.0)
         own = np.maximum(own, np.finfo(float).tiny)
         over = np.square(residual / own) - self.sigma[self.at] ** 2 / own
         return influence * np.sqrt(np.maximum(over, 0.0))
