@@ -10,8 +10,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import BSpline, PPoly
-from scipy.linalg import solve_triangular
-from scipy.sparse.linalg import spsolve
 
 from mdr_core.abel.slope_pieces import heights
 from mdr_core.profiles.table_points import TablePoints
@@ -144,27 +142,31 @@ class TableBasis:
         rest = np.zeros((len(splines), self.heights.shape[1] - self.size))
         return np.hstack([splines[:, 1:], rest, splines[:, :1]])
 
-    def _derivative(self) -> Array:
-        """Coefficients of the rough derivative, weighted by the root of the support of its splines.
-
-        Over the splines alone.
-        """
-        k, t, rows, span = self.degree, self.t, np.eye(self.size), np.empty(0)
-        for o in range(1, self.order + 1):
-            span = (t[k + 1 : k + 1 + self.size - o] - t[o : self.size]) / (k - o + 1)
-            rows = np.diff(rows, axis=0) / span[:, None]
-        return rows * np.sqrt(span)[:, None]
+    @cached_property
+    def _spans(self) -> list[Array]:
+        """Steps by which differences of coefficients are divided, for each derivative."""
+        k, t, size = self.degree, self.t, self.size
+        return [
+            (t[k + 1 : k + 1 + size - o] - t[o:size]) / (k - o + 1)
+            for o in range(1, self.order + 1)
+        ]
 
     @cached_property
     def roughness(self) -> Array:
-        """Rows of which the sum of squares is the roughness."""
-        return self.padded(self._derivative())
+        """Rows of which the sum of squares is the roughness, from the end to the axis.
+
+        Coefficients of the rough derivative, weighted by the root of the support of its splines.
+        """
+        rows = np.eye(self.size)
+        for span in self._spans:
+            rows = np.diff(rows, axis=0) / span[:, None]
+        return self.padded(rows * np.sqrt(self._spans[-1])[:, None])[::-1]
 
     def grading(self, start: float) -> Array:
         """Weight of each row of a roughness that is graded from the radius `start` on."""
         o = self.order
         support = sliding_window_view(self.t[o:-o], self.degree - o + 2).mean(axis=1)
-        return ((support + start) / (1 + start)) ** (o - 0.5)
+        return ((support[::-1] + start) / (1 + start)) ** (o - 0.5)
 
     @cached_property
     def by_roughness(self) -> tuple[Array, Array]:
@@ -173,14 +175,22 @@ class TableBasis:
         The first have jumps of the slope at the axis and at each break before them. Each of the
         others has one row of the roughness that is 1.
         """
-        matrix = BSpline.design_matrix(self.places, self.t, self.degree)
-        powers = self.places[:, None] ** np.arange(self.order)
-        smooth = self.padded(spsolve(matrix.tocsc(), powers).reshape(self.size, -1).T)
+        first, *others = self._spans
+        slopes = sliding_window_view(self.t[2:-2], self.degree - 1).mean(axis=1)
+        square = np.append(0.0, np.cumsum(2 * slopes * first))
+        powers = np.stack([np.ones(self.size), self.places, square])[: self.order]
+        # Higher derivatives are zero at the end and the slope on the axis: sums of one sign.
+        rough = np.diag(1 / np.sqrt(others[-1]))
+        for span in others[::-1]:
+            rough = np.cumsum((span[:, None] * rough)[::-1], axis=0)[::-1]
+            rough = np.pad(rough, ((0, 1), (0, 0)))
+        rough = np.pad(np.cumsum(first[:, None] * rough, axis=0), ((1, 0), (0, 0)))
+        rough *= (-1.0) ** (self.order - 1)
+        smooth = self.padded(powers)
         own = np.eye(self.heights.shape[1])[self.size - 1 : -1]
-        triangle = np.vstack([np.eye(self.order, self.size), self._derivative()])
-        rough = solve_triangular(triangle, np.eye(self.size)[:, self.order :], lower=True)
         ordered = np.vstack([smooth[:1], own[:-1:2], smooth[1:], own[1::2], own[-1:]])
-        return ordered.T, self.padded(rough.T).T
+        # The largest come first, so that the small ones keep their digits in decompositions.
+        return ordered.T, self.padded(rough.T).T[:, ::-1]
 
     def spline(self, coefficients: Array) -> BSpline:
         """Slope, or several, of coefficients over all columns."""

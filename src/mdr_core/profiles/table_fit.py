@@ -260,24 +260,21 @@ class _Model:
         bent = triangle[:, smooth.shape[1] :] / grade
         used = np.append(jumps, np.full(smooth.shape[1] - jumps.size, True)).nonzero()[0]
         goal = self.turn.T @ basis.weighted[1]
-        seen, sizes, right = np.linalg.svd(triangle[:, used], full_matrices=False)
+        seen, sizes, right = np.linalg.svd(triangle[:, used])
         # Few points leave directions open.
-        known = sizes > _UNSEEN * sizes[0]
-        self.seen, sizes = seen[:, known], sizes[known]
-        self.smooth = smooth[:, used] @ (right[known].T / sizes)
-        shared = self.seen.T @ bent
-        base, triangle = np.linalg.qr(bent - self.seen @ shared)
-        left, size, right = np.linalg.svd(triangle)
-        self.left_over = max(count - sizes.size, 0)
-        kept = min(size.size, self.left_over)
-        self.left, self.size = base @ left[:, :kept], size[:kept]
-        turned = (rough / grade - self.smooth @ shared) @ right.T
+        known = int(np.sum(sizes > _UNSEEN * sizes[0]))
+        self.seen, beside, sizes = seen[:, :known], seen[:, known:], sizes[:known]
+        self.smooth = smooth[:, used] @ (right[:known].T / sizes)
+        base, triangle = np.linalg.qr(beside.T @ bent)
+        left, self.size, right = np.linalg.svd(triangle)
+        self.left, self.left_over, kept = beside @ base @ left, count - known, self.size.size
+        turned = (rough / grade - self.smooth @ (self.seen.T @ bent)) @ right.T
         self.rough, self.open = turned[:, :kept], turned[:, kept:]
         self.fitted = self.seen.T @ goal
         self.part = self.left.T @ goal
         rest = basis.weighted[1] - self.turn @ (self.seen @ self.fitted + self.left @ self.part)
         self.rest = rest * (kept < self.left_over)
-        self.weights = max(float(np.square(size).max(initial=0.0)), _UNSEEN**2) * _WEIGHTS
+        self.weights = max(float(np.square(self.size).max(initial=0.0)), _UNSEEN**2) * _WEIGHTS
         share = self.weights[:, None] / np.add.outer(self.weights, np.square(self.size))
         whole = share @ np.square(self.part) + np.square(self.rest).sum()
         least = max(basis.points.rounding, _LEAST_SIGMA)
