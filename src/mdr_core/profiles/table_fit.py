@@ -116,7 +116,7 @@ def _likeliest(points: TablePoints, uncertainty: float | None) -> TableFit:
             found = score, coefficients, each, excess
     assert found
     _, coefficients, best, excess = found
-    spread, rival = _spread(tried, best, blind=points.x[0] > basis.knots[1] / 2)
+    spread, rival = _spread(tried, best, blind=bool(points.x[0] > basis.knots[1] / 2))
     if excess > 1:
         at = np.array([best.at])
         noisier = best.weights.searchsorted(best.weights[at] * excess**2, side="right") - 1
@@ -165,7 +165,7 @@ def _spread(tried: "list[_Model]", best: "_Model", *, blind: bool) -> tuple[Arra
     blind : True without a point on the axis, which alone tells a sharp tip from a smooth one.
     """
     least = {
-        sharp: min((each.least for each in tried if blind is False or each.jumps[0] == sharp))
+        sharp: min(each.least for each in tried if not blind or each.jumps[0] == sharp)
         for sharp in {bool(each.jumps[0]) for each in tried}
     }
     odds = [np.exp((least[bool(each.jumps[0])] - each.score) / 2) for each in tried]
