@@ -33,15 +33,15 @@ _LEAST_WEIGHT: Final = 1e-21
 _RESOLVED: Final = 1e-10
 # Radius, over the first one, from which a graded roughness grows; infinity is an even one.
 _GRADINGS: Final = (np.inf, 0.1)
-# Twice the logarithm of the odds against one jump of the slope: a parameter more.
-_JUMP: Final = 2.0
+# Twice the logarithm of the odds against one jump of the slope, 20 to 1.
+_JUMP: Final = 6.0
 # Likelihood over the largest one below which a choice has no share in the error.
 _NEGLIGIBLE: Final = 1e-3
 # Change of twice the logarithm of the likelihood that decides nothing: 5 % of the odds.
 _SAME: Final = 0.1
 # Smallest jump of the slope, over the mean slope of the table. Below, it replaces a jump of a
 # higher derivative.
-_LEAST_JUMP: Final = 1e-3
+_LEAST_JUMP: Final = 1e-2
 # Singular values of directions that the points do not show, over the largest.
 _UNSEEN: Final = 1e-8
 # Standard deviation of heights that are met, over their range: rounding errors of the fit, by
@@ -116,13 +116,8 @@ def _likeliest(points: TablePoints, uncertainty: float | None) -> TableFit:
             found = score, coefficients, each, excess
     assert found
     _, coefficients, best, excess = found
-    spread, rival = _spread(tried, best, blind=bool(points.x[0] > basis.knots[1] / 2))
-    if excess > 1:
-        at = np.array([best.at])
-        noisier = best.weights.searchsorted(best.weights[at] * excess**2, side="right") - 1
-        amount = np.square(excess * best.sigma[at] / best.sigma[noisier])
-        spread = np.hstack([spread, best.posterior(noisier, amount)])
-    return basis.fit(coefficients, spread, rival)
+    blind = bool(points.x[0] > basis.knots[1] / 2)
+    return basis.fit(coefficients, *_spread(tried, best, excess, blind=blind))
 
 
 def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
@@ -144,8 +139,8 @@ def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
         return coefficients, 1.0
     for noise in (np.inf, _NO_DISC / 4):
         # Most shapes are admissible at the likeliest weight of less noise.
-        score = np.where(chosen.sigma < noise, chosen.score, np.inf)
-        chosen.at = chosen.at if noise == np.inf else int(np.argmin(score))
+        if noise < np.inf:
+            chosen.at = int(np.argmin(np.where(chosen.sigma < noise, chosen.score, np.inf)))
         coefficients = _not_negative(basis, chosen)
         off = root_mean_square(basis.points.weight * basis.deviation(coefficients))
         if off <= _NO_DISC:
@@ -153,7 +148,9 @@ def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
     return coefficients, max(off / chosen.sigma[chosen.at], 1.0)
 
 
-def _spread(tried: "list[_Model]", best: "_Model", *, blind: bool) -> tuple[Array, float]:
+def _spread(
+    tried: "list[_Model]", best: "_Model", excess: float, *, blind: bool
+) -> tuple[Array, float]:
     """Return possible deviations of the coefficients (columns, n), and the odds of another tip.
 
     The deviations are two standard deviations of the posterior of all models and weights, and the
@@ -171,6 +168,11 @@ def _spread(tried: "list[_Model]", best: "_Model", *, blind: bool) -> tuple[Arra
     odds = [np.exp((least[bool(each.jumps[0])] - each.score) / 2) for each in tried]
     total, center = sum(each.sum() for each in odds), best.mean(np.array([best.at]))
     parts, rival = [2 * best.excess()], 0.0
+    if excess > 1:
+        at = np.array([best.at])
+        noisier = best.weights.searchsorted(best.weights[at] * excess**2, side="right") - 1
+        amount = np.square(excess * best.sigma[at] / best.sigma[noisier])
+        parts.append(best.posterior(noisier, amount))
     for each, own in zip(tried, odds, strict=True):
         rival += own.sum() / total * (each.jumps[0] != best.jumps[0])
         likely = np.flatnonzero(own > _NEGLIGIBLE)
@@ -300,8 +302,10 @@ class _Model:
             unit = np.arange(whole.size) == np.argmin(np.abs(np.log(variance / self.weights)))
             self.score = np.where(unit, self.score, np.inf)
         self.least = float(self.score.min())
-        # Heights that are met tell no small weight from another.
-        likely = np.flatnonzero(self.score <= self.least + _SAME)
+        # Heights that are met tell no weight from another: a large one adds rounding errors.
+        met = self.sigma <= _LEAST_SIGMA
+        met &= whole <= whole[np.argmin(self.score)] + _SAME * variance
+        likely = np.flatnonzero((self.score <= self.least + _SAME) | met)
         self.at = int(likely[min(np.sum(_WEIGHTS[likely] < _RESOLVED), likely.size - 1)])
 
     @property
