@@ -33,15 +33,15 @@ _LEAST_WEIGHT: Final = 1e-21
 _RESOLVED: Final = 1e-10
 # Radius, over the first one, from which a graded roughness grows; infinity is an even one.
 _GRADINGS: Final = (np.inf, 0.1)
-# Twice the logarithm of the odds against one jump of the slope, 20 to 1.
-_JUMP: Final = 6.0
+# Twice the logarithm of the odds against one jump of the slope, e to 1.
+_JUMP: Final = 2.0
 # Likelihood over the largest one below which a choice has no share in the error.
 _NEGLIGIBLE: Final = 1e-3
 # Change of twice the logarithm of the likelihood that decides nothing: 5 % of the odds.
 _SAME: Final = 0.1
 # Smallest jump of the slope, over the mean slope of the table. Below, it replaces a jump of a
 # higher derivative.
-_LEAST_JUMP: Final = 1e-2
+_LEAST_JUMP: Final = 2e-2
 # Singular values of directions that the points do not show, over the largest.
 _UNSEEN: Final = 1e-8
 # Standard deviation of heights that are met, over their range: rounding errors of the fit, by
