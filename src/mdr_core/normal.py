@@ -16,6 +16,7 @@ from mdr_core.extrema import largest_stress
 from mdr_core.materials import Material, normal_modulus
 from mdr_core.profiles import Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
+from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import (
     extremes,
@@ -30,6 +31,13 @@ CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
 ACCURACY: Final = 1e-9
 """Error estimate above which results carry the warning `accuracy`: results next to a limit of their
 method have this accuracy (manual, Speed and accuracy)."""
+
+# Gauss's rule for the error of pressures, an estimate: nodes on each of equal intervals.
+_OF_PRESSURE: Final = (8, 8)
+# Radius over that of the second knot of a table at which the pressure on the axis is judged.
+_TIP: Final = 0.1
+# Radii over the contact radius at which the error of pressures is computed, beside the axis.
+_PLACES: Final = (0.3, 0.6, 0.9)
 
 
 @dataclass(frozen=True, repr=False)
@@ -131,6 +139,33 @@ class NormalContact(validity.ContactResults):
             where(whole > 0, part / where(whole > 0, whole, 1.0), 0.0) for part, whole in parts
         ]
         return np.maximum(*errors)
+
+    @cached_property
+    def pressure_data_error(self) -> Array | None:
+        """Error of pressures that the points of a table leave open, over the largest pressure [1].
+
+        An estimate of dp(r)/E* = (1/pi) int_r^a dg'(x)/sqrt(x^2 - r^2) dx and of the error of a, at
+        a few radii; None for profiles that are known, infinite next to a sharp tip.
+        """
+        if not isinstance(self.profile, Tabulated):
+            return None
+        fit, a = self.profile.fit, np.ravel(np.where(self.loaded, self.contact_radius, 1.0))
+        a = np.minimum(a, self.profile.domain)
+        of_edge = fit.spread_at(a)[0] * (self.control != "contact_radius")
+        # s = sqrt(x^2 - r^2), with nodes at the axis too.
+        shares, weights = composite_rule(*_OF_PRESSURE)
+        errors = []
+        # On the axis itself, a sharp tip that is not excluded has an infinite pressure.
+        for r in (np.minimum(_TIP * fit.edges[1], a / 2), *np.outer(_PLACES, a)):
+            root = np.sqrt((a - r) * (a + r))
+            s = root[:, None] * shares**3
+            x = np.hypot(r[:, None], s)
+            kernel = 3 * root[:, None] * shares**2 * weights / x
+            errors.append(np.hypot(fit.spread_of(np.minimum(x, a[:, None]), kernel), of_edge / root))
+        size = np.max(errors, axis=0).reshape(np.shape(self.contact_radius)) / np.pi
+        largest = np.asarray(self.maximum_pressure) / self.e_star
+        part = np.divide(size, largest, out=np.full_like(size, np.inf), where=np.isfinite(largest))
+        return np.where(self.loaded, part, 0.0)[()]
 
     @property
     def method(self) -> str:

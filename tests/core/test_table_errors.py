@@ -39,7 +39,7 @@ def compared(table: Table) -> tuple[Array, Array, set[str]]:
 
 
 @pytest.mark.parametrize(
-    ("first", "count"), [(0, 60), pytest.param(100, 700, marks=pytest.mark.long)]
+    ("first", "count"), [(0, 250), pytest.param(1000, 700, marks=pytest.mark.long)]
 )
 def test_random_tables_are_covered(first: int, count: int) -> None:
     missed, stated, silent = [], [], 0

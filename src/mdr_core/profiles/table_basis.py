@@ -10,10 +10,11 @@ from typing import Any, Final
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import BSpline, PPoly
+from scipy.sparse import csr_array
 
 from mdr_core.abel.slope_pieces import heights
 from mdr_core.profiles.table_points import TablePoints
-from mdr_core.profiles.truncated import RoundedPunch, TruncatedCone
+from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
 from mdr_core.typing import Array, Flags, Indices
 
 # Largest degree of the slope: the error of 20 points of a sphere is a tenth of that of a cubic.
@@ -43,10 +44,10 @@ class TableFit:
     """Root mean square of the deviation from the points [length]."""
     largest: tuple[float, float]
     """Largest deviation and its radius [length]."""
-    spread: tuple[BSpline, BSpline]
-    """Possible deviations of g and of its integral, as functions of a over the last radius."""
-    spread_of_jumps: tuple[tuple[float, Array], ...]
-    """Break over the last radius, and possible deviations of both jumps, shape (2, n)."""
+    spread: tuple[BSpline, BSpline, BSpline]
+    """Possible deviations of g', g and its integral, as functions of a over the last radius."""
+    spread_of_jumps: tuple[tuple[Truncated, Array], ...]
+    """Images of unit jumps over the last radius, and possible deviations of the jumps, (n,)."""
     scale: tuple[float, float]
     """Last radius and height of the table [length]."""
     rival: float
@@ -56,14 +57,11 @@ class TableFit:
         """Sizes of the errors of g, int_0^a x g' dx and int_0^a g dx that the points leave open."""
         end, height = self.scale
         a = np.ravel(radius) / end
-        depth, moment = (each(a).reshape(a.size, -1) for each in self.spread)
-        for b, jumps in self.spread_of_jumps:
-            for shape, jump in zip(
-                (TruncatedCone(b, 1.0), RoundedPunch(b, 1.0)), jumps, strict=True
-            ):
-                own = shape.g(a)
-                depth = depth + np.outer(own, jump)
-                moment = moment + np.outer(a * own - shape.force_within(a) / 2, jump)
+        depth, moment = (each(a).reshape(a.size, -1) for each in self.spread[1:])
+        for shape, jump in self.spread_of_jumps:
+            own = shape.g(a)
+            depth = depth + np.outer(own, jump)
+            moment = moment + np.outer(a * own - shape.force_within(a) / 2, jump)
         errors = depth, a[:, None] * depth - moment, moment
         units = height, end * height, end * height
         return tuple(
@@ -71,16 +69,21 @@ class TableFit:
             for unit, error in zip(units, errors, strict=True)
         )
 
-    def slope_spread(self, radius: Array) -> Array:
-        """Return possible deviations of g' at radii (m,) that the points leave open [1], (m, n)."""
-        x, (end, height) = radius / self.scale[0], self.scale
-        slopes = self.spread[0].derivative()(x).reshape(x.size, -1)
-        for b, jumps in self.spread_of_jumps:
-            for shape, jump in zip(
-                (TruncatedCone(b, 1.0), RoundedPunch(b, 1.0)), jumps, strict=True
-            ):
-                slopes = slopes + np.outer(shape.dg(x), jump)
-        return np.asarray(height / end * slopes)
+    def spread_of(self, radius: Array, kernel: Array) -> Array:
+        """Sizes of the errors of sum_j kernel_ij g'(radius_ij) that the points leave open, (m,).
+
+        Parameters
+        ----------
+        radius, kernel : radii and their factors, shape (m, n).
+        """
+        (end, height), slope = self.scale, self.spread[0]
+        x, rows = radius / end, np.arange(0, radius.size + 1, radius.shape[1])
+        sums = csr_array((kernel.ravel(), np.arange(radius.size), rows))
+        basis = BSpline.design_matrix(np.minimum(x.ravel(), 1.0), slope.t, slope.k)
+        error = (sums @ basis) @ slope.c.reshape(slope.c.shape[0], -1)
+        for shape, jump in self.spread_of_jumps:
+            error = error + np.outer((kernel * shape.dg(x)).sum(axis=1), jump)
+        return np.asarray(height / end * np.sqrt(np.square(error).sum(axis=1)))
 
 
 class TableBasis:
@@ -227,15 +230,15 @@ class TableBasis:
         worst = int(np.argmax(np.abs(off)))
         possible = self.spline(spread)
         many = spread.reshape(len(spread), -1)
-        possible_jumps = many[self.size - 1 : -2].reshape(-1, 2, many.shape[1])
+        shapes = [kind(b, 1.0) for b in self.points.breaks for kind in (TruncatedCone, RoundedPunch)]
         return TableFit(
             self.knots * end,
             rows * powers,
             jumps.tolist(),
             height * root_mean_square(off * np.minimum(self.points.weight, 1.0)),
             (height * float(abs(off[worst])), end * float(self.points.x[worst])),
-            (possible.antiderivative(), possible.antiderivative(2)),
-            tuple(zip(self.points.breaks, possible_jumps, strict=True)),
+            (possible, possible.antiderivative(), possible.antiderivative(2)),
+            tuple(zip(shapes, many[self.size - 1 : -2], strict=True)),
             self.points.scale,
             rival,
         )
