@@ -1,4 +1,4 @@
-"""A table gives the contact of the body that it samples within its error estimate."""
+"""Tables meet the body that they sample within their error estimate."""
 
 from __future__ import annotations
 
