@@ -164,7 +164,8 @@ class NormalContact(validity.ContactResults):
             errors.append(np.hypot(fit.spread_of(np.minimum(x, a[:, None]), kernel), of_edge / root))
         size = np.max(errors, axis=0).reshape(np.shape(self.contact_radius)) / np.pi
         largest = np.asarray(self.maximum_pressure) / self.e_star
-        part = np.divide(size, largest, out=np.full_like(size, np.inf), where=np.isfinite(largest))
+        known = np.isfinite(largest) & (largest > 0)
+        part = np.divide(size, largest, out=np.full_like(size, np.inf), where=known)
         return np.where(self.loaded, part, 0.0)[()]
 
     @property

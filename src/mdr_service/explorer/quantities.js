@@ -36,5 +36,7 @@ export const QUANTITIES = {
   contact_point: ["Contact point", "displacement"],
   force_offset: ["Force offset", "force"],
   data_error: ["error by the points", "1"],
+  pressure_data_error: ["error of pressures by the points", "1"],
+  pull_off_data_error: ["error of the pull-off by the points", "1"],
   work_of_adhesion: ["Work of adhesion", "N/m"],
 };

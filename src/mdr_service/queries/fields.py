@@ -73,10 +73,14 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     for name in query.quantities:
         rows = broadcast(field(name, end, radius), shape)
         values[name] = np.ascontiguousarray(rows)
+    infinite: dict[str, Flags] = {}
+    if (error := contact.pressure_data_error) is not None:
+        values["pressure_data_error"] = np.full(query.loads, error)
+        infinite["pressure_data_error"] = np.isinf(values["pressure_data_error"])
     edges = np.ravel(contact.contact_radius)
     radii = map(float, contact.profile.infinite_pressure_radii)
     at_singular = np.isin(radius, [0.0, *radii, *edges])
-    infinite: dict[str, Flags] = dict.fromkeys(("pressure", "shear_stress"), at_singular)
+    infinite |= dict.fromkeys(("pressure", "shear_stress"), at_singular)
     method = _method(contact, query.quantities)
     # The errors of the edges and of the integrals add up.
     integrated = 0.0 if method == "closed_form" else TIGHTEST

@@ -26,6 +26,13 @@ _Regime = Annotated[
 ]
 _NULL = "null where infinite, with a warning `singular`"
 _UNBOUNDED = "null if wear is unbounded"
+_of_pressure = partial(
+    quantity,
+    "1",
+    "Estimate of the error of pressures that the points of a table leave open, over the largest "
+    "pressure; null where that is infinite",
+    default=None,
+)
 
 
 class Answer(BaseModel):
@@ -79,6 +86,7 @@ class ContactAnswer(SolvedAnswer):
         "Estimate of the relative error of depth and force that the points of a table leave open",
         default=None,
     )
+    pressure_data_error: list[float | None] = _of_pressure()
 
 
 class NormalAnswer(ContactAnswer):
@@ -88,6 +96,11 @@ class NormalAnswer(ContactAnswer):
     pull_off_depth: list[float] = _length("Lowest depth of a contact", default=None)
     retraction: list[float] = _length(
         "Retraction Δℓ from the contact without adhesion of the same radius", default=None
+    )
+    pull_off_data_error: list[float] = _number(
+        "Estimate of the relative error of the pull-off force that the points of a table leave "
+        "open",
+        default=None,
     )
 
 
@@ -229,6 +242,7 @@ class StressAnswer(SolvedAnswer):
         "Tangential load q_x of the equivalent foundation at x = r, by load and radius",
         default=None,
     )
+    pressure_data_error: list[float | None] = _of_pressure()
 
 
 class LargestStress(Answer):
