@@ -161,7 +161,9 @@ class NormalContact(validity.ContactResults):
             s = root[:, None] * shares**3
             x = np.hypot(r[:, None], s)
             kernel = 3 * root[:, None] * shares**2 * weights / x
-            errors.append(np.hypot(fit.spread_of(np.minimum(x, a[:, None]), kernel), of_edge / root))
+            errors.append(
+                np.hypot(fit.spread_of(np.minimum(x, a[:, None]), kernel), of_edge / root)
+            )
         size = np.max(errors, axis=0).reshape(np.shape(self.contact_radius)) / np.pi
         largest = np.asarray(self.maximum_pressure) / self.e_star
         known = np.isfinite(largest) & (largest > 0)

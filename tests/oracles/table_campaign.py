@@ -20,8 +20,6 @@ from mdr_core.profiles import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.random import Generator
 
     Array = np.ndarray
@@ -101,14 +99,14 @@ def drawn(seed: int) -> Table:
     number = int(random.integers(10))
     body, kinks = bodies(random, end)[number]
     count = int(np.exp(random.uniform(np.log(4), np.log(200))))
-    if number == 6:
-        r = _even_heights(body, end, count)
-    else:
-        r = spaced(random, count) * end
+    even = number == 6
+    r = _even_heights(body, end, count) if even else spaced(random, count) * end
     if random.random() < 0.25:
         r = r[np.abs(r) > 0]
     f = np.asarray(body.f(np.abs(r)))
-    record = str(random.choice(["exact", "digits", "decimals", "noise"], p=[0.32, 0.17, 0.17, 0.34]))
+    record = str(
+        random.choice(["exact", "digits", "decimals", "noise"], p=[0.32, 0.17, 0.17, 0.34])
+    )
     uncertainty, places = None, int(random.integers(3, 7))
     if record == "digits":
         r, f = digits(r, places), digits(f, places)

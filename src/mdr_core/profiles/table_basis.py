@@ -230,7 +230,9 @@ class TableBasis:
         worst = int(np.argmax(np.abs(off)))
         possible = self.spline(spread)
         many = spread.reshape(len(spread), -1)
-        shapes = [kind(b, 1.0) for b in self.points.breaks for kind in (TruncatedCone, RoundedPunch)]
+        shapes = [
+            kind(b, 1.0) for b in self.points.breaks for kind in (TruncatedCone, RoundedPunch)
+        ]
         return TableFit(
             self.knots * end,
             rows * powers,

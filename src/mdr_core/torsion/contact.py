@@ -120,7 +120,9 @@ class TorsionalContact(validity.ContactResults):
             ratio = (end / a)[..., None] ** shares
             kernel = ratio**power if power else ellipkm1(np.square((end / a)[..., None] / ratio))
             x, kernel = a[..., None] * ratio, weights * kernel
-            possible = profile.fit.spread_of(*(each.reshape(-1, x.shape[-1]) for each in (x, kernel)))
+            possible = profile.fit.spread_of(
+                *(each.reshape(-1, x.shape[-1]) for each in (x, kernel))
+            )
             errors.append(possible.reshape(a.shape) / (kernel * profile.dg(x)).sum(axis=-1))
         return np.where(normal.loaded, np.max(errors, axis=0), 0.0)[()]
 

@@ -73,14 +73,10 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     for name in query.quantities:
         rows = broadcast(field(name, end, radius), shape)
         values[name] = np.ascontiguousarray(rows)
-    infinite: dict[str, Flags] = {}
-    if (error := contact.pressure_data_error) is not None:
-        values["pressure_data_error"] = np.full(query.loads, error)
-        infinite["pressure_data_error"] = np.isinf(values["pressure_data_error"])
     edges = np.ravel(contact.contact_radius)
     radii = map(float, contact.profile.infinite_pressure_radii)
     at_singular = np.isin(radius, [0.0, *radii, *edges])
-    infinite |= dict.fromkeys(("pressure", "shear_stress"), at_singular)
+    infinite: dict[str, Flags] = dict.fromkeys(("pressure", "shear_stress"), at_singular)
     method = _method(contact, query.quantities)
     # The errors of the edges and of the integrals add up.
     integrated = 0.0 if method == "closed_form" else TIGHTEST
@@ -88,6 +84,10 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         fields.edge_error(contact if name == "pressure" else partial or contact, name, radius)
         for name in query.quantities
     )
+    warnings = singular(radius, values, infinite)
+    if (known := contact.pressure_data_error) is not None:
+        values["pressure_data_error"] = np.full(query.loads, known)
+        infinite["pressure_data_error"] = np.isinf(values["pressure_data_error"])
     return response(
         query,
         source,
@@ -95,7 +95,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         infinite=infinite,
         method=method,
         error=max(fields.own_error(source), integrated) + at_edges,
-        warnings=singular(radius, values, infinite),
+        warnings=warnings,
     )
 
 
