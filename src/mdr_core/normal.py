@@ -232,7 +232,8 @@ class NormalContact(validity.ContactResults):
             validity.infinite_maximum(self),
         ]
         if isinstance(self.profile, Tabulated):
-            return [validity.table_end(self), validity.smoothed(self, self.profile), *found]
+            of_table = [validity.smoothed(self, self.profile), validity.tip(self, self.profile)]
+            return [validity.table_end(self), *of_table, *found]
         return found
 
 

@@ -52,6 +52,8 @@ class TableFit:
     """Last radius and height of the table [length]."""
     rival: float
     """Probability of a tip of the other kind, sharp or smooth [1]."""
+    deciding: float
+    """Radius of the point without which the profile would change most [length]."""
 
     def spread_at(self, radius: Array) -> tuple[Array, Array, Array]:
         """Sizes of the errors of g, int_0^a x g' dx and int_0^a g dx that the points leave open."""
@@ -80,7 +82,7 @@ class TableFit:
         x, rows = radius / end, np.arange(0, radius.size + 1, radius.shape[1])
         sums = csr_array((kernel.ravel(), np.arange(radius.size), rows))
         basis = BSpline.design_matrix(np.minimum(x.ravel(), 1.0), slope.t, slope.k)
-        error = (sums @ basis) @ slope.c.reshape(slope.c.shape[0], -1)
+        error = (sums @ basis).toarray() @ slope.c.reshape(slope.c.shape[0], -1)
         for shape, jump in self.spread_of_jumps:
             error = error + np.outer((kernel * shape.dg(x)).sum(axis=1), jump)
         return np.asarray(height / end * np.sqrt(np.square(error).sum(axis=1)))
@@ -218,7 +220,7 @@ class TableBasis:
         """Heights less those of the points."""
         return self.heights @ coefficients - self.points.y
 
-    def fit(self, coefficients: Array, spread: Array, rival: float) -> TableFit:
+    def fit(self, coefficients: Array, spread: Array, rival: float, point: int) -> TableFit:
         """Return the fit of coefficients. Parameters: see `TableFit`."""
         end, height = self.points.scale
         polynomials: Any = PPoly.from_spline(self.spline(coefficients).tck)
@@ -243,6 +245,7 @@ class TableBasis:
             tuple(zip(shapes, many[self.size - 1 : -2], strict=True)),
             self.points.scale,
             rival,
+            end * float(self.points.x[point]),
         )
 
 

@@ -105,17 +105,15 @@ def _likeliest(points: TablePoints, uncertainty: float | None) -> TableFit:
             tried += models(best.jumps | (np.arange(best.jumps.size) == i))
         seen = [each for each in tried if each.smallest_jump > _LEAST_JUMP]
         before, best = best, min(seen, key=lambda each: each.least)
-    found: tuple[float, Array, _Model, float] | None = None
+    found: list[tuple[float, Array, _Model, float]] = []
     for each in sorted(seen, key=lambda each: each.least):
-        if found and each.least >= found[0]:
+        if found and each.least >= min(score for score, *_ in found):
             break
         coefficients, excess = _admissible(basis, each)
         # A deviation that no admissible shape removes is noise.
         score = each.least + 2 * max(each.left_over, 1) * np.log(excess)
-        if not found or score < found[0]:
-            found = score, coefficients, each, excess
-    assert found
-    _, coefficients, best, excess = found
+        found.append((score, coefficients, each, excess))
+    _, coefficients, best, excess = min(found, key=lambda fit: fit[0])
     blind = bool(points.x[0] > basis.knots[1] / 2)
     return basis.fit(coefficients, *_spread(tried, best, excess, blind=blind))
 
@@ -150,8 +148,8 @@ def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
 
 def _spread(
     tried: "list[_Model]", best: "_Model", excess: float, *, blind: bool
-) -> tuple[Array, float]:
-    """Return possible deviations of the coefficients (columns, n), and the odds of another tip.
+) -> tuple[Array, float, int]:
+    """Return possible deviations of the coefficients (columns, n), odds, and the deciding point.
 
     The deviations are two standard deviations of the posterior of all models and weights, and the
     influence of each point times the excess of its residual, when it is left out, over the
@@ -167,7 +165,8 @@ def _spread(
     }
     odds = [np.exp((least[bool(each.jumps[0])] - each.score) / 2) for each in tried]
     total, center = sum(each.sum() for each in odds), best.mean(np.array([best.at]))
-    parts, rival = [2 * best.excess()], 0.0
+    left_out = best.excess()
+    parts, rival = [2 * left_out], 0.0
     if excess > 1:
         at = np.array([best.at])
         noisier = best.weights.searchsorted(best.weights[at] * excess**2, side="right") - 1
@@ -180,7 +179,8 @@ def _spread(
             share = own[likely] / total
             off = each.mean(likely) - center
             parts += [each.posterior(likely, share), 2 * off * np.sqrt(share)]
-    return np.linalg.qr(np.hstack(parts).T, mode="r").T, float(rival)
+    spread = np.asarray(np.linalg.qr(np.hstack(parts).T, mode="r")).T
+    return spread, float(rival), int(np.argmax(np.linalg.norm(left_out, axis=0)))
 
 
 def _not_negative(basis: TableBasis, chosen: "_Model") -> Array:
@@ -260,7 +260,7 @@ class _Model:
         smooth, rough = basis.by_roughness
         self.turn, triangle = basis.triangle
         bent = triangle[:, smooth.shape[1] :] / grade
-        used = np.append(jumps, np.full(smooth.shape[1] - jumps.size, True)).nonzero()[0]
+        used = np.append(np.flatnonzero(jumps), np.arange(jumps.size, smooth.shape[1]))
         goal = self.turn.T @ basis.weighted[1]
         seen, sizes, right = np.linalg.svd(triangle[:, used])
         # Few points leave directions open.
@@ -280,9 +280,10 @@ class _Model:
         share = self.weights[:, None] / np.add.outer(self.weights, np.square(self.size))
         whole = share @ np.square(self.part) + np.square(self.rest).sum()
         least = max(basis.points.rounding, _LEAST_SIGMA)
-        self.quantile, self.sigma = 2.0, np.full(whole.size, max(uncertainty or 0.0, _LEAST_SIGMA))
+        self.quantile = 2.0
+        self.sigma: Array = np.full(whole.size, max(uncertainty or 0.0, _LEAST_SIGMA))
         if uncertainty is None:
-            self.quantile = stdtrit(max(self.left_over, 1), _QUANTILE)
+            self.quantile = float(stdtrit(max(self.left_over, 1), _QUANTILE))
             self.sigma = np.sqrt(np.maximum(whole / max(self.left_over, 1), least**2))
         variance = np.square(self.sigma)
         self.score = (
@@ -306,7 +307,7 @@ class _Model:
         met = self.sigma <= _LEAST_SIGMA
         met &= whole <= whole[np.argmin(self.score)] + _SAME * variance
         likely = np.flatnonzero((self.score <= self.least + _SAME) | met)
-        self.at = int(likely[min(np.sum(_WEIGHTS[likely] < _RESOLVED), likely.size - 1)])
+        self.at = int(likely[min(int(np.sum(_WEIGHTS[likely] < _RESOLVED)), likely.size - 1)])
 
     @property
     def smallest_jump(self) -> float:

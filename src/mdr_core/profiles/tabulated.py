@@ -417,7 +417,7 @@ def tip_points(
     h = lowest_height + range_ * np.linspace(0.0, 1.0, _POINTS_OF_AREA) ** 2
     # The end of the tip is known, whatever A(h) is next to it.
     h = np.append(0.0, h[h > 0])
-    area = sum(c * h**2.0 ** (1 - i) for i, c in enumerate(coefficients))
+    area = np.array([c * h**2.0 ** (1 - i) for i, c in enumerate(coefficients)]).sum(axis=0)
     bad = np.flatnonzero((np.diff(area) <= 0) | (area[1:] <= 0))
     if bad.size:
         # At the largest height no other one is left.
