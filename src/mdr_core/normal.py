@@ -232,7 +232,7 @@ class NormalContact(validity.ContactResults):
             validity.infinite_maximum(self),
         ]
         if isinstance(self.profile, Tabulated):
-            of_table = [validity.smoothed(self, self.profile), validity.tip(self, self.profile)]
+            of_table = [validity.tip(self, self.profile), validity.smoothed(self, self.profile)]
             return [validity.table_end(self), *of_table, *found]
         return found
 

@@ -1,8 +1,8 @@
 """Limits of validity of the model: findings with stable codes.
 
 The codes are `table_end`, `smoothed`, `tip`, `half_space`, `thin_body`, `plastic`,
-`elastic_similarity` and `impossible_moduli`; `singular` and `accuracy` come with the results, and `yield` from
-`mdr_core.subsurface`.
+`elastic_similarity` and `impossible_moduli`; `singular` and `accuracy` come with the results, and
+`yield` from `mdr_core.subsurface`.
 
 Source: notes, §8.
 """
