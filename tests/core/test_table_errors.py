@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from mdr_core import adhesion, fields
+from mdr_core.errors import InputError
 from mdr_core.normal import solve
 from mdr_core.profiles import (
     Cone,
@@ -112,5 +114,75 @@ def test_tip_of_a_long_table_in_even_heights_is_covered() -> None:
     r = np.sqrt((24.5 * h * h + 40 * h) / np.pi)
     a = np.array([3.0, 8.0, 30.0])
     found, known = (solve(each, 1.0, contact_radius=a) for each in (Tabulated(r, h), body))
+    missed = np.abs(found.normal_force / known.normal_force - 1)
+    assert (missed <= np.asarray(found.data_error)).all()
+
+
+def test_pressures_of_random_tables_are_covered() -> None:
+    """On the axis and at 0.3 of the contact radius, where both pressures are finite."""
+    ratios = []
+    for seed in range(80):
+        table = table_campaign.drawn(seed)
+        a = float(0.6 * np.abs(table.r).max())
+        if a <= 1.001 * table.body.first_radius:
+            continue
+        profile = Tabulated(table.r, table.f, breaks=table.breaks, uncertainty=table.uncertainty)
+        found, known = (solve(each, 1.0, contact_radius=a) for each in (profile, table.body))
+        stated = max(float(np.asarray(found.pressure_data_error)), 1e-9)
+        pair = np.array([fields.pressure(each, [0.0, 0.3 * a]) for each in (found, known)])
+        pair = pair[:, np.isfinite(pair).all(axis=0)] / float(found.maximum_pressure)
+        ratios += (np.abs(pair[0] - pair[1]) / stated)[
+            : pair.shape[1] * np.isfinite(stated)
+        ].tolist()
+    assert len(ratios) > 80
+    assert np.mean(np.less_equal(ratios, 1)) >= 0.93
+
+
+def test_pull_off_of_a_noisy_ball_is_covered() -> None:
+    """-(3/2) pi w R."""
+    r, covered = np.linspace(0, 1, 40), []
+    for seed in range(20):
+        noise = 1e-3 * np.random.default_rng(seed).standard_normal(r.size)
+        contact = adhesion.solve(Tabulated(r, r * r / 2 + noise), 1.0, 1e-3, contact_radius=0.5)
+        missed = abs(float(contact.pull_off_force) / (-1.5 * np.pi * 1e-3) - 1)
+        covered.append(missed <= float(np.asarray(contact.pull_off_data_error)))
+    assert np.mean(covered) >= 0.9
+
+
+def test_rival_tip_is_named() -> None:
+    """Points of a hyperboloid far beyond its tip do not show that it is smooth."""
+    r = np.linspace(0.0, 1.0, 12)
+    codes = {each.code for each in solve(Tabulated(r[1:], r[1:]), 1.0, contact_radius=0.5).warnings}
+    assert "tip" in codes
+    assert "plastic" not in codes
+    exact = solve(Tabulated(r, r), 1.0, contact_radius=0.5)
+    assert {"plastic", "tip"} & {each.code for each in exact.warnings} == {"plastic"}
+
+
+#: C0, C1, ... of a calibrated Berkovich tip [nm]: negative between 2.3 and 3.4 nm alone.
+CALIBRATED = (24.5, 2460.555732, -185073.933454, 2197392.23639, -5682984.151049, 3678718.2292)
+
+
+def test_area_function_with_negative_coefficients() -> None:
+    with pytest.raises(InputError, match=r"A\(h\) .* below the height 3\.\d") as refused:
+        Tabulated.from_area_coefficients(CALIBRATED, 400.0)
+    assert refused.value.path == ("profile", "lowest_height")
+    tip = Tabulated.from_area_coefficients(CALIBRATED, 400.0, 10.0)
+    # 100 nm deep, E* = 69.6 GPa.
+    assert 0.00195 < solve(tip, 69.6e-9, indentation_depth=100.0).normal_force < 0.00211
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_calibrated_area_functions_are_covered(seed: int) -> None:
+    """Fits of six coefficients to a Berkovich tip of a known radius, with errors of 1 %."""
+    random = np.random.default_rng(seed)
+    radius, h = random.uniform(20, 150), np.geomspace(15, 1000, 40)
+    area = (24.5 * h * h + 2 * np.pi * radius * h) * (1 + 0.01 * random.standard_normal(h.size))
+    terms = np.stack([h**2.0 ** (1 - i) for i in range(6)], axis=1)
+    coefficients = np.linalg.lstsq(terms / area[:, None], np.ones_like(h))[0]
+    tip = Tabulated.from_area_coefficients(coefficients.tolist(), 1000.0, 15.0)
+    body = Hyperboloid(float(np.sqrt(np.pi / 24.5)), radius)
+    a = np.array([150.0, 400.0])
+    found, known = (solve(each, 1.0, contact_radius=a) for each in (tip, body))
     missed = np.abs(found.normal_force / known.normal_force - 1)
     assert (missed <= np.asarray(found.data_error)).all()
