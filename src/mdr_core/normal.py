@@ -149,26 +149,21 @@ class NormalContact(validity.ContactResults):
         """
         if not isinstance(self.profile, Tabulated):
             return None
-        fit, a = self.profile.fit, np.ravel(np.where(self.loaded, self.contact_radius, 1.0))
-        a = np.minimum(a, self.profile.domain)
-        of_edge = fit.spread_at(a)[0] * (self.control != "contact_radius")
-        # s = sqrt(x^2 - r^2), with nodes at the axis too.
+        fit, loaded = self.profile.fit, self.loaded
+        a = np.ravel(np.where(loaded, self.contact_radius, self.profile.domain))
+        # On the axis itself a sharp tip that is not excluded has an infinite pressure.
+        r = np.stack([np.minimum(_TIP * fit.edges[1], a / 2), *np.outer(_PLACES, a)])
+        root = np.sqrt((a - r) * (a + r))[..., None]
+        # s = sqrt(x^2 - r^2) has nodes near the axis too.
         shares, weights = composite_rule(*_OF_PRESSURE)
-        errors = []
-        # On the axis itself, a sharp tip that is not excluded has an infinite pressure.
-        for r in (np.minimum(_TIP * fit.edges[1], a / 2), *np.outer(_PLACES, a)):
-            root = np.sqrt((a - r) * (a + r))
-            s = root[:, None] * shares**3
-            x = np.hypot(r[:, None], s)
-            kernel = 3 * root[:, None] * shares**2 * weights / x
-            errors.append(
-                np.hypot(fit.spread_of(np.minimum(x, a[:, None]), kernel), of_edge / root)
-            )
-        size = np.max(errors, axis=0).reshape(np.shape(self.contact_radius)) / np.pi
-        largest = np.asarray(self.maximum_pressure) / self.e_star
+        x = np.hypot(r[..., None], root * shares**3).reshape(-1, shares.size)
+        kernel = (3 * root * shares**2 * weights).reshape(x.shape) / x
+        of_edge = fit.spread_at(a)[0] * (self.control != "contact_radius") / root[..., 0]
+        size = np.hypot(fit.spread_of(x, kernel).reshape(r.shape), of_edge).max(axis=0) / np.pi
+        largest = np.ravel(self.maximum_pressure / self.e_star)
         known = np.isfinite(largest) & (largest > 0)
-        part = np.divide(size, largest, out=np.full_like(size, np.inf), where=known)
-        return np.where(self.loaded, part, 0.0)[()]
+        part = np.where(known, size / np.where(known, largest, 1.0), np.inf)
+        return np.where(loaded, part.reshape(np.shape(loaded)), 0.0)[()]
 
     @property
     def method(self) -> str:

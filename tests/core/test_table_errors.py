@@ -128,12 +128,12 @@ def test_pressures_of_random_tables_are_covered() -> None:
             continue
         profile = Tabulated(table.r, table.f, breaks=table.breaks, uncertainty=table.uncertainty)
         found, known = (solve(each, 1.0, contact_radius=a) for each in (profile, table.body))
+        if not np.isfinite(found.maximum_pressure):
+            continue
         stated = max(float(np.asarray(found.pressure_data_error)), 1e-9)
         pair = np.array([fields.pressure(each, [0.0, 0.3 * a]) for each in (found, known)])
         pair = pair[:, np.isfinite(pair).all(axis=0)] / float(found.maximum_pressure)
-        ratios += (np.abs(pair[0] - pair[1]) / stated)[
-            : pair.shape[1] * np.isfinite(stated)
-        ].tolist()
+        ratios += (np.abs(pair[0] - pair[1]) / stated).tolist()
     assert len(ratios) > 80
     assert np.mean(np.less_equal(ratios, 1)) >= 0.93
 

@@ -27,8 +27,8 @@ from mdr_core.typing import Array, Flags, Indices
 # Weights of the roughness, noise over roughness squared, over the one that halves the smoothest
 # bend: from heights that are met to a parabola.
 _WEIGHTS: Final = 10.0 ** np.arange(-40, 6.1, 0.5)
-# Smallest weight in a problem of rows, whose roots have 16 digits.
-_LEAST_WEIGHT: Final = 1e-21
+# Place of the smallest weight in a problem of rows, 1e-21: its root has no digits to spare.
+_LEAST: Final = 38
 # Smallest weight that is preferred among equally likely ones: its root has digits to spare.
 _RESOLVED: Final = 1e-10
 # Radius, over the first one, from which a graded roughness grows; infinity is an even one.
@@ -130,19 +130,15 @@ def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
         jumps[np.abs(jumps) < _FLOOR] = 0.0
         floor = 0.0
     # Where the slope falls by a step, g' is infinite and negative beyond it.
-    if (
-        min(jumps.min(initial=0.0), coefficients[-1]) >= 0
-        and basis.slopes(coefficients).min() > floor
-    ):
+    falls = min(jumps.min(initial=0.0), coefficients[-1]) < 0
+    if not falls and basis.slopes(coefficients).min() > floor:
         return coefficients, 1.0
-    for noise in (np.inf, _NO_DISC / 4):
+    coefficients, off = _not_negative(basis, chosen)
+    if off > _NO_DISC:
         # Most shapes are admissible at the likeliest weight of less noise.
-        if noise < np.inf:
-            chosen.at = int(np.argmin(np.where(chosen.sigma < noise, chosen.score, np.inf)))
-        coefficients = _not_negative(basis, chosen)
-        off = root_mean_square(basis.points.weight * basis.deviation(coefficients))
-        if off <= _NO_DISC:
-            break
+        score = np.where(chosen.sigma < _NO_DISC / 4, chosen.score, np.inf)
+        chosen.at = int(np.argmin(score))
+        coefficients, off = _not_negative(basis, chosen)
     return coefficients, max(off / chosen.sigma[chosen.at], 1.0)
 
 
@@ -183,8 +179,8 @@ def _spread(
     return spread, float(rival), int(np.argmax(np.linalg.norm(left_out, axis=0)))
 
 
-def _not_negative(basis: TableBasis, chosen: "_Model") -> Array:
-    """Return the coefficients of least misfit and roughness with g' above the floor.
+def _not_negative(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
+    """Return the coefficients of least misfit and roughness with g' > 0, and their misfit.
 
     Source: lawson-hanson, Ch. 23.
     """
@@ -207,7 +203,7 @@ def _not_negative(basis: TableBasis, chosen: "_Model") -> Array:
         found[bound] = np.maximum(found, floor)[bound]
         if basis.slopes(found).min() > 0:
             break
-    return found
+    return found, root_mean_square(basis.points.weight * basis.deviation(found))
 
 
 def _by_rows(basis: TableBasis, chosen: "_Model", given: Array) -> Array:
@@ -279,13 +275,12 @@ class _Model:
         self.weights = max(float(np.square(self.size).max(initial=0.0)), _UNSEEN**2) * _WEIGHTS
         share = self.weights[:, None] / np.add.outer(self.weights, np.square(self.size))
         whole = share @ np.square(self.part) + np.square(self.rest).sum()
-        least = max(basis.points.rounding, _LEAST_SIGMA)
-        self.quantile = 2.0
-        self.sigma: Array = np.full(whole.size, max(uncertainty or 0.0, _LEAST_SIGMA))
+        freedom = max(self.left_over, 1)
+        self.quantile, variance = 2.0, 0 * whole + max(uncertainty or 0.0, _LEAST_SIGMA) ** 2
         if uncertainty is None:
-            self.quantile = float(stdtrit(max(self.left_over, 1), _QUANTILE))
-            self.sigma = np.sqrt(np.maximum(whole / max(self.left_over, 1), least**2))
-        variance = np.square(self.sigma)
+            self.quantile = float(stdtrit(freedom, _QUANTILE))
+            variance = np.maximum(whole / freedom, max(basis.points.rounding, _LEAST_SIGMA) ** 2)
+        self.sigma = np.sqrt(variance)
         self.score = (
             whole / variance
             + self.left_over * np.log(2 * np.pi * variance)
@@ -296,7 +291,7 @@ class _Model:
         )
         """-2 log of the likelihood of each weight, for unit densities of slopes without roughness.
 
-        The last term keeps a noise that would be rejected from being likely.
+        The last term makes a noise that is rejected unlikely.
         """
         if self.left_over == 0:
             # No point is left to tell the roughness: it is that of the unit.
@@ -304,8 +299,8 @@ class _Model:
             self.score = np.where(unit, self.score, np.inf)
         self.least = float(self.score.min())
         # Heights that are met tell no weight from another: a large one adds rounding errors.
-        met = self.sigma <= _LEAST_SIGMA
-        met &= whole <= whole[np.argmin(self.score)] + _SAME * variance
+        best = whole[np.argmin(self.score)]
+        met = (variance <= _LEAST_SIGMA**2) & (whole <= best + _SAME * variance)
         likely = np.flatnonzero((self.score <= self.least + _SAME) | met)
         self.at = int(likely[min(int(np.sum(_WEIGHTS[likely] < _RESOLVED)), likely.size - 1)])
 
@@ -325,8 +320,7 @@ class _Model:
     @property
     def rows(self) -> Array:
         """Rows of the roughness."""
-        weight = max(self.weights[self.at], self.weights[-1] / _WEIGHTS[-1] * _LEAST_WEIGHT)
-        return np.sqrt(weight) * self.graded
+        return np.sqrt(max(self.weights[self.at], self.weights[_LEAST])) * self.graded
 
     def mean(self, at: Indices) -> Array:
         """Coefficients for weights of the roughness, shape (columns, n)."""
@@ -342,10 +336,7 @@ class _Model:
         return self.quantile * np.hstack([smooth, np.hstack([self.rough, self.open]) * bent])
 
     def excess(self) -> Array:
-        """Influence of each point times the excess of its residual when it is left out.
-
-        Source: rippa.
-        """
+        """Influence of each point times the excess of its residual if left out. Source: rippa."""
         sum2 = np.square(self.size) + self.weights[self.at]
         share = self.weights[self.at] / sum2
         seen, left = self.turn @ self.seen, self.turn @ self.left
