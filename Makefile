@@ -113,6 +113,7 @@ docs: .venv/development
 
 openapi: .venv/development
 	$(BIN)/python -m mdr_command openapi > openapi.json
+	$(BIN)/python -m tests.contract.page_quantities < openapi.json > src/mdr_service/explorer/quantities.js
 
 # The source distribution, a wheel for this Python, and one of Python text alone for the others, each
 # built from the unpacked source distribution: a folder that has been built in may hold old modules.
