@@ -24,8 +24,7 @@ from mdr_core.profiles.table_basis import TableBasis, TableFit, root_mean_square
 from mdr_core.profiles.table_points import TablePoints, cleaned, off_axis
 from mdr_core.typing import Array, Flags, Indices
 
-# Weights of the roughness, noise over roughness squared, over the one that halves the smoothest
-# bend: from heights that are met to a parabola.
+# Weights of the roughness, over the one that halves the smoothest bend: to a parabola.
 _WEIGHTS: Final = 10.0 ** np.arange(-40, 6.1, 0.5)
 # Place of the smallest weight in a problem of rows, 1e-21: its root has no digits to spare.
 _LEAST: Final = 38
@@ -39,9 +38,10 @@ _JUMP: Final = 2.0
 _NEGLIGIBLE: Final = 1e-3
 # Change of twice the logarithm of the likelihood that decides nothing: 5 % of the odds.
 _SAME: Final = 0.1
-# Smallest jump of the slope, over the mean slope of the table. Below, it replaces a jump of a
-# higher derivative.
+# Smallest jump of the slope over the mean slope: a smaller one replaces a higher derivative's.
 _LEAST_JUMP: Final = 2e-2
+# Largest possible deviation of a slope or curvature, over the mean slope of the table.
+_LARGEST: Final = 10.0
 # Singular values of directions that the points do not show, over the largest.
 _UNSEEN: Final = 1e-8
 # Standard deviation of heights that are met, over their range: rounding errors of the fit, by
@@ -175,7 +175,10 @@ def _spread(
             share = own[likely] / total
             off = each.mean(likely) - center
             parts += [each.posterior(likely, share), 2 * off * np.sqrt(share)]
-    spread = np.asarray(np.linalg.qr(np.hstack(parts).T, mode="r")).T
+    # Few points leave a jump open without bound, but no admissible slope is that large.
+    spread = np.hstack(parts)
+    spread *= _LARGEST / np.abs(spread).max(axis=0).clip(_LARGEST)
+    spread = np.asarray(np.linalg.qr(spread.T, mode="r")).T
     return spread, float(rival), int(np.argmax(np.linalg.norm(left_out, axis=0)))
 
 
@@ -289,10 +292,7 @@ class _Model:
             + _JUMP * jumps.sum()
             + variance / _NO_DISC**2
         )
-        """-2 log of the likelihood of each weight, for unit densities of slopes without roughness.
-
-        The last term makes a noise that is rejected unlikely.
-        """
+        """-2 log likelihood of the weights; the last term makes a noise that is rejected unlikely."""
         if self.left_over == 0:
             # No point is left to tell the roughness: it is that of the unit.
             unit = np.arange(whole.size) == np.argmin(np.abs(np.log(variance / self.weights)))
