@@ -292,7 +292,7 @@ class _Model:
             + _JUMP * jumps.sum()
             + variance / _NO_DISC**2
         )
-        """-2 log likelihood of the weights; the last term makes a noise that is rejected unlikely."""
+        """-2 log of the likelihood; its last term makes a noise that is rejected unlikely."""
         if self.left_over == 0:
             # No point is left to tell the roughness: it is that of the unit.
             unit = np.arange(whole.size) == np.argmin(np.abs(np.log(variance / self.weights)))
