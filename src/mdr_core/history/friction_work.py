@@ -62,7 +62,10 @@ class SweptParts(NamedTuple):
 
 
 def dissipation(moments: IntervalMoments, tree: VertexTree) -> Array:
-    """Return G* D/(mu E*)^2 of every step [length^3], >= 0."""
+    """Return G* D/(mu E*)^2 of every step [length^3], >= 0.
+
+    The parameters of the profile may be arrays over the steps.
+    """
     parts = swept(tree)
     span = parts.run[0]
     ended = (parts.fallen[0] - parts.upper[0]) / np.where(span > 0, span, 1.0)
@@ -74,13 +77,13 @@ def dissipation(moments: IntervalMoments, tree: VertexTree) -> Array:
     if moments.over_forces:
         # Prescribed forces do not exceed friction: work on the axis is rounding error.
         terms[0, low == 0] = 0.0
-    edges = moments.contact_coordinate(np.append(low, low + length)).reshape(2, -1)
+    moments = moments.part(parts.step)
+    edges = moments.contact_coordinate(np.array([low, low + length]))
     weights = moments.over(low, length, edges).weights
     # Over forces the measure is infinite on the axis, where M is zero.
     work = np.multiply(terms, weights, where=terms > 0, out=np.zeros(terms.shape)).sum(axis=0)
     # All springs of a flat are on the axis.
-    flat = 2 * float(moments.profile.first_radius)
-    work += np.where(low == 0, flat * terms[0], 0.0)
+    work += np.where(low == 0, 2 * moments.profile.first_radius * terms[0], 0.0)
     return np.asarray(np.bincount(parts.step, work, tree.top.size), dtype=float)
 
 
@@ -102,16 +105,19 @@ def _work(parts: SweptParts) -> Array:
 
 def swept(tree: VertexTree) -> SweptParts:
     """Return what the slip front sweeps of the polyline before each step, and of the path of P."""
-    vertex, *place = tree.start
-    path = np.hstack([np.array(place)[:, None], tree.path])
-    (n, n_end), (s, s_end) = ((row[:-1], row[1:]) for row in path)
+    count = tree.top.size
+    tops, n, s = (
+        np.append(first, later)[:count]
+        for first, later in zip(tree.start, (tree.top, *tree.path), strict=True)
+    )
+    n_end, s_end = tree.path
     # Contact begins, or ends, where the straight step crosses normal coordinate zero.
     touch, moved = np.maximum(n, n_end) > 0, n - n_end
     crossing = s + (s_end - s) * n / np.where(touch & (moved != 0), moved, 1.0)
     s, s_end = np.where(n > 0, s, crossing), np.where(n_end > 0, s_end, crossing)
     n, n_end = np.maximum(n, 0.0), np.maximum(n_end, 0.0)
     fallen = np.where(touch, [n - n_end, s - s_end], 0.0)
-    tops, count = np.append(vertex, tree.top[:-1]), tree.parent.size + tree.top.size
+    count += tree.parent.size
     while True:
         room, found = count, np.empty((_NUMBERS, count))
         count = kernel.sweep(tree.parent, tree.vertices, tops, fallen, found)

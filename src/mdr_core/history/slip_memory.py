@@ -71,8 +71,8 @@ class VertexTree:
     """Normal coordinate, and slope of the anchor below each vertex, shape (2, m)."""
     top: Indices
     """Vertex of the load point after each step, -1 in separation; shape (n,)."""
-    start: tuple[int, float, float]
-    """Vertex and coordinates of the load point before the first step."""
+    start: tuple[int, float, float] | tuple[Indices, Array, Array]
+    """Vertex and coordinates of the load point before the first step, or before each, shape (n,)."""
     path: Array
     """Normal and tangential coordinate of each load point, shape (2, n)."""
 
