@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple, overload
+from typing import Any, ClassVar, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,14 +12,9 @@ from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import ContactState
 from mdr_core.history.friction_work import dissipation
-from mdr_core.history.slip_layout import COLUMNS, NORMAL
-from mdr_core.history.slip_memory import Polyline, VertexTree, read_only
-from mdr_core.history.step_results import (
-    REGIMES,
-    TractionVertices,
-    decides_regime,
-    regime_codes,
-)
+from mdr_core.history.slip_layout import COLUMNS
+from mdr_core.history.slip_memory import Polylines, read_only
+from mdr_core.history.step_results import REGIMES, TractionVertices, decides_regime, regime_codes
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.materials import Material, normal_modulus, shear_modulus
 from mdr_core.profiles import Profile
@@ -32,43 +27,6 @@ from mdr_core.validation import (
     require_positive,
     require_type,
 )
-
-
-class Polylines(NamedTuple):
-    """Polylines of many contacts."""
-
-    vertices: Array
-    """Vertices of all polylines, one after another, with the columns of `slip_layout`."""
-    ends: Indices
-    """End of each polyline among the vertices, shape (n,)."""
-    load_points: Array
-    """Normal and tangential coordinate of each contact, shape (2, n)."""
-
-    @property
-    def sizes(self) -> Indices:
-        """Number of vertices of each polyline, 0 in separation."""
-        return np.diff(self.ends, prepend=0)
-
-    def line(self, index: int) -> Polyline:
-        """Return one polyline."""
-        begin = self.ends[index - 1] if index else 0
-        rows = self.vertices[begin : self.ends[index]]
-        return Polyline(rows, *self.load_points[:, index].tolist())
-
-    def at(self, chosen: Indices) -> "Polylines":
-        """Return the chosen polylines."""
-        sizes = self.sizes[chosen]
-        ends = np.cumsum(sizes)
-        rows = np.arange(sizes.sum()) + np.repeat(self.ends[chosen] - ends, sizes)
-        return Polylines(read_only(self.vertices[rows]), ends, self.load_points[:, chosen])
-
-    def tree(self, load_points: Array) -> VertexTree:
-        """Return all polylines as a tree, with the step of each contact to a load point."""
-        begins, in_contact = self.ends - self.sizes, self.sizes > 0
-        parent = np.arange(-1, len(self.vertices) - 1, dtype=np.intp)
-        parent[begins[in_contact]] = -1
-        top, rows = np.where(in_contact, self.ends - 1, -1), self.vertices[:, NORMAL:].T
-        return VertexTree(parent, rows, top, (top, *self.load_points), load_points)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -104,6 +62,7 @@ class ContactStates(Results):
         "regime",
     )
     about: ClassVar[tuple[str, ...]] = ()
+    moduli: ClassVar[tuple[str, ...]] = ("e_star", "g_star", "friction_coefficient")
 
     def __len__(self) -> int:
         return self.polylines.ends.size
@@ -118,17 +77,15 @@ class ContactStates(Results):
         one = isinstance(index, int | np.integer)
         at: Any = range(len(self))[index] if one else np.arange(len(self))[index].ravel()
         swept = {name: self.profile.parameters[name][at] for name in self.profile.swept}
-        profile = self.profile.with_parameters(swept)
-        moduli = [value[at] if np.ndim(value) else value for value in self._moduli]
+        given: dict[str, Any] = {"profile": self.profile.with_parameters(swept)}
+        for name in self.moduli:
+            value = getattr(self, name)
+            given[name] = value[at] if np.ndim(value) else value
         if one:
-            lines = self.polylines.line(at), self.before.line(at)
-            return ContactState(profile, *map(float, moduli), *lines)
-        lines = self.polylines.at(at), self.before.at(at)
-        return ContactStates(profile, *moduli, *lines, self.regime_before[at])
-
-    @property
-    def _moduli(self) -> tuple[Any, Any, Any]:
-        return self.e_star, self.g_star, self.friction_coefficient
+            line, before = self.polylines.line(at), self.before.line(at)
+            return ContactState(polyline=line, before=before, **given)
+        given["polylines"], given["before"] = self.polylines.at(at), self.before.at(at)
+        return ContactStates(regime_before=self.regime_before[at], **given)
 
     @property
     def displacement_ratio(self) -> Parameter:
@@ -249,12 +206,13 @@ def unloaded_many(
         ("friction_coefficient",): friction_coefficient,
     }
     given |= {("profile", name): profile.parameters[name] for name in profile.swept}
-    moduli, count = _per_contact(given)
+    values, count = _per_contact(given)
     for path, value in given.items():
         require_positive(path, value)
-    nothing = np.zeros((0, COLUMNS)), np.zeros(count, dtype=np.intp), np.zeros((2, count))
-    lines = Polylines(read_only(nothing[0]), *nothing[1:])
-    return ContactStates(profile, *moduli[:3], lines, lines, lines.ends)
+    none = np.zeros(count, dtype=np.intp)
+    lines = Polylines(read_only(np.zeros((0, COLUMNS))), none, np.zeros((2, count)))
+    e_star, g_star, friction, *_ = values
+    return ContactStates(profile, e_star, g_star, friction, lines, lines, none)
 
 
 def advance_many(
@@ -308,30 +266,17 @@ def advance_many(
     profile, largest = states.profile, states.profile.largest_loads
     if largest is not None:
         require_inside(("indentation_depth",), loads[0] > largest[0], profile.domain)
-    last = states.polylines
     after = np.empty((2, count))
     after[0], after[1] = loads[0], loads[1] / states.displacement_ratio
-    path = np.vstack([last.load_points, after])
-    moved = slip_memory.moved_each(last.vertices, last.ends, path)
-    return replace(
-        states,
-        polylines=Polylines(*moved, after),
-        before=last,
-        regime_before=states.regime_codes,
-    )
+    lines, codes = slip_memory.moved_each(states.polylines, after), states.regime_codes
+    return replace(states, polylines=lines, before=states.polylines, regime_before=codes)
 
 
 def join(*states: ContactState | ContactStates) -> ContactStates:
     """Return the states of several sets of contacts as those of one, in their order.
 
-    Parameters
-    ----------
-    states : states with profiles of one kind. Their parameters, moduli and coefficients of friction
-        may differ; tables and series are the same profile for all.
-
-    Raises
-    ------
-    InputError : no states, or profiles of several kinds.
+    Parameters, moduli and coefficients of friction may differ, but not a table or a series. Raises
+    InputError without states, and for profiles of several kinds.
 
     Examples
     --------
@@ -346,41 +291,34 @@ def join(*states: ContactState | ContactStates) -> ContactStates:
     if not many:
         raise InputError(("states",), "at least one is needed")
     profile, sizes = many[0].profile, [len(each) for each in many]
-    given = [each.profile.parameters for each in many]
-    numbers = given[0] and all(
-        isinstance(one, float | int | np.ndarray) for one in given[0].values()
-    )
-    for each in many:
-        same = type(each.profile) is type(profile) if numbers else each.profile == profile
-        if not same:
-            detail = (
-                f"of a {profile.kind} and of another {each.profile.kind} have no common profile"
-            )
+    parameters = [each.profile.parameters for each in many]
+    # A table has no parameters, and those of a series are not numbers.
+    numbers = parameters[0] and not any(isinstance(one, tuple) for one in parameters[0].values())
+    for other in (each.profile for each in many):
+        if other != profile if not numbers else type(other) is not type(profile):
+            detail = f"a {profile.kind} and another {other.kind} cannot be joined"
             raise InputError(("states",), detail)
     if numbers:
-        profile = profile.with_parameters(
-            {name: _joined([one[name] for one in given], sizes) for name in given[0]}
-        )
-    moduli = [
-        _joined(values, sizes) for values in zip(*(each._moduli for each in many), strict=True)
-    ]
-    lines = [
-        Polylines(
-            read_only(np.concatenate([line.vertices for line in parts])),
-            np.cumsum(np.concatenate([line.sizes for line in parts])),
-            np.hstack([line.load_points for line in parts]),
-        )
-        for parts in ([each.polylines for each in many], [each.before for each in many])
-    ]
-    regimes = np.concatenate([each.regime_before for each in many])
-    return ContactStates(profile, *moduli, *lines, regimes)
+        profile = profile.with_parameters(_joined(parameters, sizes))
+    moduli = [{name: getattr(each, name) for name in ContactStates.moduli} for each in many]
+    return ContactStates(
+        profile=profile,
+        polylines=slip_memory.joined([each.polylines for each in many]),
+        before=slip_memory.joined([each.before for each in many]),
+        regime_before=np.concatenate([each.regime_before for each in many]),
+        **_joined(moduli, sizes),
+    )
 
 
-def _joined(values: Sequence[Parameter], sizes: Sequence[int]) -> Parameter:
-    """Return the values of all contacts: one number if it is common to them."""
-    if not any(map(np.ndim, values)) and len(set(values)) == 1:
-        return values[0]
-    return np.concatenate([np.broadcast_to(*each) for each in zip(values, sizes, strict=True)])
+def _joined(values: Sequence[Mapping[str, Parameter]], sizes: Sequence[int]) -> dict[str, Any]:
+    """Return values by name over all contacts; one that is common to them stays a number."""
+    found = {}
+    for name in values[0]:
+        each = [given[name] for given in values]
+        if any(map(np.ndim, each)) or len(set(each)) > 1:
+            each = [np.concatenate(list(map(np.broadcast_to, each, sizes)))]
+        found[name] = each[0]
+    return found
 
 
 def _per_contact(
@@ -403,7 +341,6 @@ def _repeated(state: ContactState, count: int) -> ContactStates:
     load_points = np.tile(load_point, (count, 1)).T
     lines = Polylines(read_only(np.tile(vertices, (count, 1))), ends, load_points)
     moduli = state.e_star, state.g_star, state.friction_coefficient
-    tree = lines.tree(load_points)
     moments = interval_moments(state.profile, over_forces=False)
-    codes = regime_codes(TractionVertices(moments, tree))
+    codes = regime_codes(TractionVertices(moments, lines.tree(load_points)))
     return ContactStates(state.profile, *moduli, lines, lines, codes)

@@ -23,7 +23,7 @@ from mdr_core.history import slip_memory
 from mdr_core.history.friction_work import dissipation
 from mdr_core.history.slip_memory import LoadPoints, Polyline, VertexTree
 from mdr_core.interval_moments import IntervalMoments, interval_moments
-from mdr_core.typing import Array, Flags, Indices
+from mdr_core.typing import Array, Flags, Indices, Numbers
 
 # Steps whose vertices are kept for later results, which take 40 MB. Those of more steps take longer
 # to be stored and fetched than to be computed again, and their memory has to have a bound.
@@ -206,13 +206,13 @@ class StepResults:
 
         Determined by the springs at their friction limit: see `regime_codes`, `decides_regime`.
         """
-        codes, before = self._per_step(regime_codes), REGIMES.index(self.regime_before)
+        codes = self._per_step(regime_codes).astype(np.intp)
+        before = REGIMES.index(self.regime_before)
         deeper = np.diff(self.points.normal, prepend=self.start.normal)
         further = np.diff(self.points.tangential, prepend=self.start.tangential)
         known = decides_regime(codes, self.points.normal, deeper, further)
         last = np.maximum.accumulate(np.where(known, np.arange(codes.size), -1))
-        found = np.where(last < 0, before, codes[last])
-        return np.maximum(found, codes > 0).astype(np.intp)
+        return np.maximum(np.where(last < 0, before, codes[last]), codes > 0)
 
     @property
     def last(self) -> Polyline:
@@ -244,7 +244,7 @@ class StepResults:
             tree, line = slip_memory.follow(line, points)
             yield _Block(TractionVertices(self.moments, tree), line)
 
-    def _per_step(self, result: Callable[[TractionVertices], Array]) -> Array:
+    def _per_step(self, result: Callable[[TractionVertices], Numbers]) -> Numbers:
         """Return a result of every step, zero in blocks without contact."""
         found = [
             result(vertices) if vertices.tree.parent.size else np.zeros(vertices.tree.top.shape)
