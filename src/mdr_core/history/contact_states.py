@@ -252,7 +252,7 @@ def advance_many(
     >>> (states.tangential_force / (0.5 * states.normal_force)).round(12).tolist()
     [0.0, 0.75, 1.0]
     """
-    needed = "the states from unloaded_many or advance_many, or one state, as from history.unloaded"
+    needed = "the states from advance_many or unloaded_many, or one state, as from history.unloaded"
     require_type("states", states, ContactState | ContactStates, needed)
     given: dict[tuple[str, ...], Any] = {
         ("indentation_depth",): indentation_depth,
