@@ -128,7 +128,7 @@ def from_bodies(
     >>> round(from_bodies([steel, RIGID]).e_star / 1e9, 3)
     230.769
     """
-    if isinstance(bodies, Body) or len(bodies) != 2:
+    if not isinstance(bodies, Sequence) or len(bodies) != 2:
         raise InputError(("material", "bodies"), BODIES)
     for i, body in enumerate(bodies):
         if not (isinstance(body, Body) or body == RIGID):

@@ -12,7 +12,7 @@ from mdr_core.history.solver import LoadHistory, solve
 from mdr_core.materials import Material
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
-from mdr_core.validation import UNRESOLVED
+from mdr_core.validation import UNRESOLVED, require_whole, single
 
 
 @dataclass(frozen=True, repr=False)
@@ -99,6 +99,16 @@ def cycles(
     >>> bool(abs(loop.energy_per_cycle[0] / (18 / 5 * (4 / 30) ** 2 * factor) - 1) < 1e-12)
     True
     """
+    for path, value in {
+        ("normal", "indentation_depth"): indentation_depth,
+        ("normal", "normal_force"): normal_force,
+        ("normal", "amplitude"): normal_amplitude,
+        ("tangential", "tangential_displacement"): tangential_displacement,
+        ("tangential", "tangential_force"): tangential_force,
+    }.items():
+        if value is not None or path[1] == "amplitude":
+            single(("history", *path), value)
+    require_whole(("history", "count"), count)
     mean = indentation_depth if normal_force is None else normal_force
     if samples_per_step is None:
         normal = "indentation_depth" if normal_force is None else "normal_force"
