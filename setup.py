@@ -1,7 +1,7 @@
 """Compiles the one sequential loop where a C compiler is found; the rest is in pyproject.toml.
 
-With SOURCE_DATE_EPOCH, the seconds of a time, the distributions are the same bytes wherever they are
-built from the same files by the same tools.
+With SOURCE_DATE_EPOCH, the seconds of a time, the distributions are the same bytes wherever they
+are built from the same files by the same tools.
 
 Without a compiler, or with MDR_PLAIN=1 in the environment, the uncompiled text of the loop is
 installed instead. On one processor its results are bit-identical.
