@@ -128,7 +128,8 @@ def from_bodies(
     >>> round(from_bodies([steel, RIGID]).e_star / 1e9, 3)
     230.769
     """
-    if not isinstance(bodies, Sequence) or len(bodies) != 2:
+    given: object = bodies
+    if not isinstance(given, Sequence) or len(given) != 2:
         raise InputError(("material", "bodies"), BODIES)
     for i, body in enumerate(bodies):
         if not (isinstance(body, Body) or body == RIGID):

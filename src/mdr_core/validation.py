@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from math import inf
-from numbers import Integral, Real
+from numbers import Real
 from typing import Any, Final
 
 import numpy as np
@@ -140,9 +140,13 @@ def require_single_positive(path: tuple[str | int, ...], value: float) -> None:
     require_positive(path, single(path, value))
 
 
-def require_whole(path: tuple[str | int, ...], value: int) -> None:
+def require_whole(path: tuple[str | int, ...], value: object) -> None:
     """Raise InputError at the path unless the value is a whole number, as of points or cycles."""
-    if isinstance(value, bool) or not isinstance(value, Integral) or abs(value) > _LARGEST_COUNT:
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, int | np.integer)
+        or not -_LARGEST_COUNT <= value <= _LARGEST_COUNT
+    ):
         raise InputError(path, f"must be a whole number, at most {_LARGEST_COUNT:.0e}")
 
 

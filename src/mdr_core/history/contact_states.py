@@ -50,17 +50,8 @@ class ContactStates(Results):
     """Slip memory before the step that led here."""
     regime_before: Indices
     """Index of the slip regime in `REGIMES` before that step."""
-    quantities: ClassVar[tuple[str, ...]] = (
-        "indentation_depth",
-        "normal_force",
-        "contact_radius",
-        "tangential_displacement",
-        "tangential_force",
-        "elastic_energy",
-        "tangential_energy",
-        "dissipation",
-        "regime",
-    )
+    # Slip fronts differ in number.
+    quantities: ClassVar[tuple[str, ...]] = (*ContactState.quantities[:-1], "regime")
     about: ClassVar[tuple[str, ...]] = ()
     moduli: ClassVar[tuple[str, ...]] = ("e_star", "g_star", "friction_coefficient")
 

@@ -52,7 +52,8 @@ class SavedState(NamedTuple):
     @classmethod
     def parsed(cls, given: Mapping[str, Any], contact: str) -> Self:
         """Return the state of a `contact` from its members; raise InputError if it is of none."""
-        if not isinstance(given, Mapping) or set(given) != set(cls._fields):
+        members: object = given
+        if not isinstance(members, Mapping) or set(members) != set(cls._fields):
             detail = f"must have the members of a final_state: {', '.join(cls._fields)}"
             raise InputError(("initial_state",), detail)
         if given["regime"] not in REGIMES:

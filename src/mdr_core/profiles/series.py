@@ -57,7 +57,8 @@ class Series(Profile):
 
     def __post_init__(self) -> None:
         path = ("profile", "terms")
-        if not (isinstance(self.terms, tuple | list) and self.terms):
+        terms: Any = self.terms
+        if not (isinstance(terms, tuple | list) and terms):
             raise InputError(path, "at least one term is needed, in a tuple of PowerTerm")
         for i, term in enumerate(self.terms):
             if not isinstance(term, PowerTerm):
