@@ -132,7 +132,8 @@ def from_bodies(
     if not isinstance(given, Sequence) or len(given) != 2:
         raise InputError(("material", "bodies"), BODIES)
     for i, body in enumerate(bodies):
-        if not (isinstance(body, Body) or body == RIGID):
+        # A comparison with an array would be an array.
+        if not isinstance(body, Body) and str(body) != RIGID:
             raise InputError(("material", "bodies", i), 'must be a Body or "rigid"')
     parts = [body for body in bodies if isinstance(body, Body)]
     if not parts:

@@ -59,32 +59,27 @@ def as_numbers(path: tuple[str | int, ...], values: float | ArrayLike) -> Array:
             # As an array it would hold the number beneath the mask.
             detail = "is masked: leave it out, or give a number"
             raise InputError((*path, *first_index(masked)), detail)
-        with suppress(TypeError, ValueError):
+        with suppress(TypeError, ValueError, OverflowError):
             array = np.asarray(values)
             # NumPy would convert text, flags and dates as well.
-            if array.dtype.kind in "fiu" or (array.dtype.kind == "O" and _odd(values) is None):
-                numbers = _as_doubles(path, array)
+            if array.dtype.kind in "fiu" or (array.dtype.kind == "O" and not _odd(values)):
+                numbers = array.astype(float, copy=False)
     if numbers is None:
         odd = _odd(values)
-        detail = f"must be a number or an array of numbers, not {odd or type(values).__name__}"
+        # Of numbers alone only an integer beyond double precision is not converted.
+        detail = f"must be a number or an array of numbers, not {odd}" if odd else FINITE
         raise InputError(path, detail)
     return numbers[()]
 
 
-def _as_doubles(path: tuple[str | int, ...], array: Any) -> Array:
-    """Return numbers as doubles; raise InputError for an integer that is beyond their range."""
-    try:
-        return np.asarray(array.astype(float, copy=False))
-    except OverflowError:
-        raise InputError(path, FINITE) from None
-
-
-def _odd(values: Any) -> str | None:
-    """Return the type of the first value that is not a number."""
-    for value in np.array(values, dtype=object).flat:
-        if isinstance(value, bool) or not isinstance(value, Real | Decimal):
-            return type(value).__name__
-    return None
+def _odd(values: Any) -> str:
+    """Return the type of the first value that is not a number, empty if there is none."""
+    with suppress(ValueError):
+        for value in np.array(values, dtype=object).flat:
+            if isinstance(value, bool) or not isinstance(value, Real | Decimal):
+                return type(value).__name__
+        return ""
+    return type(values).__name__
 
 
 def extremes(values: float | ArrayLike) -> tuple[float, float]:

@@ -152,6 +152,7 @@ MISTAKES = {
     "Arabic digits": "\u0661\u0662",
     "texts": ["1", "2"],
     "rows of two lengths": [[1.0], [1.0, 2.0]],
+    "arrays of two shapes": [np.zeros((2, 3)), np.zeros((2, 4))],
     "a complex number": 1j,
     "dates": np.array(["2020-01-01"], dtype="datetime64[D]"),
     "an object": object(),
