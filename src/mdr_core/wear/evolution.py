@@ -23,6 +23,7 @@ from mdr_core.validation import (
     require_single_positive,
     require_tolerance,
     require_type,
+    require_whole,
 )
 from mdr_core.wear.arguments import grid, one_amplitude
 from mdr_core.wear.initial_state import InitialState
@@ -282,6 +283,7 @@ def solve(
     name, size = one_amplitude(tangential_displacement, tangential_force)
     require_single_positive(("wear_coefficient",), wear_coefficient)
     require_tolerance(rtol, TIGHTEST_INTEGRATION)
+    require_whole(("resolution",), resolution)
     if not COARSEST <= resolution <= FINEST:
         raise InputError(("resolution",), f"must lie from {COARSEST} to {FINEST}")
     for place, number in (
