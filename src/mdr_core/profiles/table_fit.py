@@ -30,8 +30,8 @@ _WEIGHTS: Final = 10.0 ** np.arange(-40, 6.1, 0.5)
 _LEAST: Final = 38
 # Smallest weight that is preferred among equally likely ones: its root has digits to spare.
 _RESOLVED: Final = 1e-10
-# Distance, over the step there, from which the roughness grows towards the axis or, if < 0, the end,
-# as of a fine tip or next to the equator of a sphere; infinity is an even one.
+# Distance over the step there from which the roughness grows towards the axis or, if < 0, the end,
+# as at a fine tip or next to the equator of a sphere; an even roughness is infinite.
 _GRADINGS: Final = (np.inf, 0.1, -0.1)
 # Twice the logarithm of the odds against one jump of the slope, e to 1.
 _JUMP: Final = 2.0
