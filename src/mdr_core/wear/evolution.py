@@ -87,7 +87,8 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
         Twice the difference from a run on two thirds of the nodes with a looser integrator, the
         tolerance of that, and the rounding error of the contact before wear. With a break of the
-        profile in the worn annulus both runs may err alike: there their absolute difference counts.
+        profile in the worn annulus both runs may err alike: there ten times the difference counts,
+        and the absolute difference of the fields.
         The error of a normal force that wear takes away in full slip is relative to the one before.
         """
         worst = self._absolute_difference if self._has_break else 0.0
@@ -97,7 +98,8 @@ class WearEvolution(validity.ContactResults, WornSurface):
             worst = max(worst, float((np.abs(value - other) / np.where(size, size, 1.0)).max()))
         # The errors of two integrations may be equal.
         tolerance = _LOOSER * self.rtol if self.states else 0.0
-        return _SAFETY * worst + tolerance + self.tangential_contact.error_estimate
+        safety = _AT_BREAKS if self._has_break else _SAFETY
+        return safety * worst + tolerance + self.tangential_contact.error_estimate
 
     @property
     def _whole_force(self) -> Array:
