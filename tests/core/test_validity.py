@@ -1,4 +1,4 @@
-"""A warning of validity would be missing, or contradict figures from the literature."""
+"""Warnings of validity are given where figures from the literature require them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A closed form of the reference would differ from quadrature of f', at or beside a break."""
+"""Closed forms of the reference equal the quadrature of f', at and beside breaks."""
 
 from __future__ import annotations
 

@@ -84,6 +84,10 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         fields.edge_error(contact if name == "pressure" else partial or contact, name, radius)
         for name in query.quantities
     )
+    warnings = singular(radius, values, infinite)
+    if (known := contact.pressure_data_error) is not None:
+        values["pressure_data_error"] = np.full(query.loads, known)
+        infinite["pressure_data_error"] = np.isinf(values["pressure_data_error"])
     return response(
         query,
         source,
@@ -91,7 +95,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         infinite=infinite,
         method=method,
         error=max(fields.own_error(source), integrated) + at_edges,
-        warnings=singular(radius, values, infinite),
+        warnings=warnings,
     )
 
 
@@ -127,6 +131,15 @@ def require_few_numbers(query: FieldQuery | SubsurfaceQuery, axis: str = "radius
     if query.numbers > most:
         detail = f"the response would hold {query.numbers} numbers, and must not exceed {most}"
         raise InputError(("points" if query.points else axis,), detail)
+
+
+def require_radii(query: FieldQuery) -> None:
+    """Raise InputError unless radii are given once at most, and where fields need them."""
+    if query.radius and query.points:
+        raise InputError(("points",), "at most one of radius, points is needed")
+    if "quantities" in query.model_fields_set and not query.radii:
+        raise InputError(("radius",), "quantities over the radius need radius or points")
+    require_few_numbers(query)
 
 
 def _require_consistent(query: StressQuery) -> None:
