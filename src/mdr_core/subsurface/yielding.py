@@ -5,7 +5,7 @@ Source: notes, §12; johnson, section 4.2.
 
 from collections.abc import Callable
 from functools import cache, lru_cache
-from math import ceil, cos, exp, inf, log, sin, sqrt
+from math import ceil, cos, exp, inf, log, sin
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
