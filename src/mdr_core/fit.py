@@ -1,9 +1,8 @@
 """Modulus, contact point, offset and adhesion from a measured curve of force over depth.
 
-Least squares of F = E* F^(d - d_0; c) + F_0 with exact slopes, from the best of many d_0 and
-c = (2 pi w/E*)^(1/2), because the sum of squares may have several minima; at w = 0 the slope in c
-is finite, that in w is not. With adhesion F^ is that of the outermost stable state, as on
-unloading, and zero after the pull-off.
+Least squares of F = E* F^(d - d_0; w/E*) + F_0 with exact slopes, from the best of many d_0 and
+w/E*, because the sum of squares may have several minima. With adhesion F^ is that of the outermost
+stable state, as on unloading, and zero after the pull-off.
 
 Source: notes, §15.
 """
@@ -18,7 +17,7 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
-from scipy.special import chdtrc, fdtrc
+from scipy.special import chdtrc, fdtrc, stdtrit
 
 from mdr_core import adhesion, normal, residuals, validity
 from mdr_core.doubles import EPS
@@ -50,15 +49,15 @@ _RETRACTIONS: Final = np.logspace(-3, 0.5, 15)
 _AFTER: Final = 1.5
 # Fewest points after a pull-off: one alone would decide on offset and adhesion.
 _DETACHED: Final = 3
-# Least c over the root of the range of depths, where the contact is that without adhesion to
-# rounding; and the sum of squares, over the variance of the noise, that w = 0 may cost.
+# Least c = (2 pi w/E*)^(1/2) over the root of the range of depths, at which the contact is that
+# without adhesion to rounding, and has its slope in w; and the sum of squares, over the variance of the noise, that w = 0 may cost.
 _LEAST_C, _NO_WORSE = 1e-6, 0.1
 # Singular value of the slopes, of unit columns, over the largest, at which two parameters have the
 # same effect, and the least part of a parameter in that effect. Rounding leaves 1e-16; fits that
 # determine their parameters have 1e-6 or more.
 _SAME, _PART = 1e-8, 0.1
-# Standard error of E* over E*: the interval is lopsided above the first, and open above the second.
-_LOPSIDED, _OPEN = 0.3, 1.0
+# Either half of an interval over that by the standard error, or the inverse, at which it is lopsided.
+_LOPSIDED: Final = 1.5
 # Growth of a standard error without a single point: at most 1.9 in curves of six points whose
 # noise is white, and 4.6 (median) where one point is taken for the pull-off.
 _ONE_POINT: Final = 2.5
@@ -268,14 +267,12 @@ def _with_adhesion(curve: "_Model", noise: float | None, body_thickness: float |
     whole = replace(curve, fit=others)
     values = whole.best()
     held = whole.result(values, noise, body_thickness)
-    # The slope in c is finite at w = 0: it gives the limit of c, and of w.
-    c = curve.least_c
-    slopes = curve.at(values | {"work_of_adhesion": c**2 * values["e_star"] / (2 * pi)})[1]
-    inverse, scale, _ = _inverted(slopes, curve.fit)
+    least_work = curve.least_ratio * held.e_star
+    inverse, scale, _ = _inverted(curve.at(values | {"work_of_adhesion": least_work})[1], curve.fit)
     place = curve.fit.index("work_of_adhesion")
-    limit = _LIMIT * held.noise * float(np.linalg.norm(inverse[place]) / scale[place])
-    work = limit**2 * held.e_star / (2 * pi)
-    errors = np.insert(held.standard_errors, place, work / _LIMIT)
+    error = held.noise * float(np.linalg.norm(inverse[place]) / scale[place])
+    work = _LIMIT * error
+    errors = np.insert(held.standard_errors, place, error)
     correlation = np.insert(np.insert(held.correlation, place, 0.0, axis=0), place, 0.0, axis=1)
     correlation[place, place] = 1.0
     message = (
@@ -375,18 +372,18 @@ def _adhesive(curve: "_Model") -> "tuple[_Model, _Parameters]":
 
 
 def _forces(
-    profile: Profile, pressed: Array, c: float, touches: Flags
+    profile: Profile, pressed: Array, work: float, touches: Flags
 ) -> tuple[Array, Array, Array]:
-    """Forces over E* at depths from first contact, and their slopes in the depth and in c.
+    """Forces over E* at depths from first contact, and their slopes in the depth and in w/E*.
 
     With adhesion the force at less depth than that of the least force is the least.
     """
-    if not c:
+    if not work:
         contact = normal.solve(profile, 1.0, indentation_depth=np.maximum(pressed, 0.0))
         slope = np.where(pressed > 0, contact.normal_stiffness, 0.0)
         return contact.normal_force, slope, np.zeros_like(pressed)
-    force, by_depth, by_c = np.zeros((3, *pressed.shape))
-    at = np.broadcast_to(touches, pressed.shape)
+    force, by_depth, by_work = np.zeros((3, *pressed.shape))
+    c, at = sqrt(2 * pi * work), np.broadcast_to(touches, pressed.shape)
     # A contact that would spread beyond the profile fits nothing.
     with suppress(InputError):
         curve = adhesion.Curve(profile, c)
@@ -397,8 +394,8 @@ def _forces(
         # dF/dd = 2 E* (a - steep), and dF/dc = -2 E* a^(1/2) steep at the same depth.
         steep = a / curve.excess(0.5, edge)
         force[at] = curve.load("normal_force", edge)
-        by_depth[at], by_c[at] = 2 * (a - steep), -2 * np.sqrt(a) * steep
-    return force, by_depth, by_c
+        by_depth[at], by_work[at] = 2 * (a - steep), -2 * np.sqrt(a) * steep * pi / c
+    return force, by_depth, by_work
 
 
 @dataclass(frozen=True, eq=False)
@@ -414,49 +411,54 @@ class _Model:
     """Points that are not after a pull-off."""
 
     @property
-    def least_c(self) -> float:
-        """Least c that is fitted [length^(1/2)]."""
-        return _LEAST_C * sqrt(float(np.ptp(self.depth)))
+    def deepest(self) -> float:
+        """Largest depth on the profile [length]."""
+        return (self.profile.largest_loads or (inf,))[0]
+
+    @property
+    def reach(self) -> float:
+        """Distance of the first contact point from the curve, over the length of the curve [1]."""
+        return _FARTHEST_ADHESIVE if "work_of_adhesion" in self.fit else _FARTHEST
+
+    @property
+    def farthest(self) -> float:
+        """First contact point that is tried [length]; the curve has to stay on the profile."""
+        before = float(self.depth.min()) - self.reach * float(np.ptp(self.depth))
+        return max(before, float(self.depth.max()) - self.deepest)
+
+    @property
+    def least_ratio(self) -> float:
+        """Least w/E* that is fitted [length]."""
+        return _LEAST_C**2 * float(np.ptp(self.depth)) / (2 * pi)
 
     def best(self) -> _Parameters:
         """Return the parameters of the least sum of squares, or an InputError."""
         low, high = float(self.depth.min()), float(self.depth.max())
-        limits, tried, retractions = (0.0, 0.0), np.zeros(1), np.zeros(1)
-        deepest = (
-            inf if self.profile.largest_loads is None else float(self.profile.largest_loads[0])
-        )
+        tried, works, limit = np.zeros(1), np.zeros(1), self.farthest
         if "contact_point" in self.fit:
-            reach = _FARTHEST_ADHESIVE if "work_of_adhesion" in self.fit else _FARTHEST
-            before = (high - low) * np.geomspace(reach, _NEAREST, _BEFORE)
-            # The curve has to stay on the profile.
-            limits = max(low - before[0], high - deepest), high
+            before = (high - low) * np.geomspace(self.reach, _NEAREST, _BEFORE)
             tried = np.append(low - before, np.linspace(low, high, _WITHIN, endpoint=False))
-            tried = np.append(limits[0], tried[tried > limits[0]])
+            tried = np.append(limit, tried[tried > limit])
         if "work_of_adhesion" in self.fit:
-            reached = normal.solve(self.profile, 1.0, indentation_depth=min(high - low, deepest))
-            retractions = _RETRACTIONS * (high - low) / np.sqrt(reached.contact_radius)
+            most = min(high - low, self.deepest)
+            reached = normal.solve(self.profile, 1.0, indentation_depth=most)
+            works = (_RETRACTIONS * (high - low)) ** 2 / (2 * pi * reached.contact_radius)
         some = np.argsort(self.depth)[:: max(1, self.depth.size // _POINTS)]
         used = {name: getattr(self, name)[some] for name in ("depth", "force", "touches")}
         coarse = replace(self, **used)
         starts: list[tuple[float, _Parameters]] = []
-        for c in retractions.tolist():
+        for work in works.tolist():
             pressed = coarse.depth - tried[:, None]
-            forces, *_ = _forces(self.profile, pressed, c, coarse.touches)
+            forces, *_ = _forces(self.profile, pressed, work, coarse.touches)
             for point, reduced in zip(tried.tolist(), forces, strict=True):
                 squares, modulus, offset = coarse.linear(reduced)
-                values = modulus, point, offset, c**2 * modulus / (2 * pi)
+                values = modulus, point, offset, work * modulus
                 starts.append((squares, dict(zip(PARAMETERS, values, strict=True))))
         _, start = min(starts, key=lambda each: each[0])
         if start["e_star"] <= 0:
             detail = "does not rise as on this profile: compression is positive, reverse its sign"
             raise InputError(("normal_force",), detail)
-        found = self.refined(start, *limits) if self.fit else start
-        if "contact_point" in self.fit and found["contact_point"] - limits[0] <= EPS * abs(limits[0]):
-            detail = "does not determine contact_point: start the curve nearer to it, or fit less"
-            if limits[0] > low - _FARTHEST_ADHESIVE * (high - low):
-                detail = f"the profile ends at the depth {deepest:.3g}: give a longer one"
-            raise InputError(("indentation_depth",), detail)
-        return found
+        return self.refined(start, limit, high) if self.fit else start
 
     def squares(self, parameters: _Parameters) -> float:
         """Return the sum of squares of the residuals."""
@@ -481,21 +483,14 @@ class _Model:
         low, high : limits of the contact point [length].
         """
         size = float(np.abs(self.force).max()) or 1.0
-        span = float(np.ptp(self.depth))
-        c = max(sqrt(2 * pi * start["work_of_adhesion"] / start["e_star"]), self.least_c)
-        # Of the work of adhesion c is the variable.
-        first = start | {"work_of_adhesion": c}
-        units = first | {"contact_point": span, "force_offset": size}
+        units = start | {"contact_point": float(np.ptp(self.depth)), "force_offset": size}
         unit = np.array([units[name] for name in self.fit])
         ends = {"contact_point": (low, high), "force_offset": (-inf, inf)}
-        ends["work_of_adhesion"] = self.least_c, inf
+        ends["work_of_adhesion"] = self.least_ratio * start["e_star"], inf
         bounds = np.transpose([ends.get(name, (0.0, inf)) for name in self.fit]) / unit
 
         def at(x: Array) -> _Parameters:
-            found = first | dict(zip(self.fit, (x * unit).tolist(), strict=True))
-            squared = found["work_of_adhesion"] ** 2 * found["e_star"] / (2 * pi)
-            adhesive = "work_of_adhesion" in self.fit
-            return found | {"work_of_adhesion": squared if adhesive else 0.0}
+            return start | dict(zip(self.fit, (x * unit).tolist(), strict=True))
 
         def residual(x: Array) -> Array:
             return (self.at(at(x))[0] - self.force) / size
@@ -503,11 +498,11 @@ class _Model:
         def jacobian(x: Array) -> Array:
             return self.at(at(x))[1] * unit / size
 
-        begin = np.array([first[name] for name in self.fit]) / unit
+        first = np.array([start[name] for name in self.fit]) / unit
         try:
             with np.errstate(all="ignore"):
                 found = least_squares(
-                    *(residual, begin, jacobian, bounds),
+                    *(residual, first, jacobian, bounds),
                     x_scale="jac",
                     ftol=EPS,
                     xtol=EPS,
@@ -521,19 +516,18 @@ class _Model:
         return at(found.x)
 
     def at(self, parameters: _Parameters) -> tuple[Array, Array]:
-        """Return the forces of the model, and their slopes in the fitted parameters, c for w."""
+        """Return the forces of the model, and their slopes in the fitted parameters."""
         e_star, d0, offset, work = (parameters[name] for name in PARAMETERS)
-        c = sqrt(2 * pi * work / e_star)
-        forces, by_depth, by_c = _forces(self.profile, self.depth - d0, c, self.touches)
+        ratio = work / e_star
+        forces, by_depth, by_work = _forces(self.profile, self.depth - d0, ratio, self.touches)
         columns = {
-            "e_star": forces,
+            # At constant w.
+            "e_star": forces - ratio * by_work,
             "contact_point": -e_star * by_depth,
             "force_offset": np.ones_like(forces),
-            "work_of_adhesion": e_star * by_c,
+            "work_of_adhesion": by_work,
         }
-        slopes = np.empty((forces.size, 0))
-        if self.fit:
-            slopes = np.column_stack([columns[name] for name in self.fit])
+        slopes = np.reshape([columns[name] for name in self.fit], (len(self.fit), -1)).T
         return e_star * forces + offset, slopes
 
     def result(self, found: _Parameters, noise: float | None, body_thickness: float | None) -> Fit:
@@ -550,22 +544,16 @@ class _Model:
         free = self.depth.size - len(self.fit)
         scatter = float(np.sqrt(np.sum(np.square(residual)) / free))
         inverse, scale, q = _inverted(slopes, self.fit)
-        if work := found["work_of_adhesion"]:
-            # From c to w: dw = (c E*/pi) dc + (w/E*) dE*.
-            c, place = sqrt(2 * pi * work / found["e_star"]), self.fit.index("work_of_adhesion")
-            if "e_star" in self.fit:
-                other = self.fit.index("e_star")
-                share = c / (2 * found["e_star"]) * scale[place] / scale[other]
-                inverse[place] += share * inverse[other]
-            scale[place] *= pi / (c * found["e_star"])
         deviations = np.linalg.norm(inverse, axis=1)
         material = Material(found["e_star"], body_thickness=body_thickness)
+        work = found["work_of_adhesion"]
         solve = partial(adhesion.solve, work_of_adhesion=work) if work else normal.solve
         deepest = max(float(self.depth.max()) - found["contact_point"], 0.0)
         contact = solve(self.profile, material, indentation_depth=deepest)
         condition = float(np.linalg.norm(inverse, 2)) if self.fit else 1.0
         sigma = noise or scatter
         errors = sigma * deviations / scale
+        is_noisy = scatter > ROUNDING * float(np.abs(self.force).max())
         code, misfit = self._misfit(slopes, residual, noise)
         return Fit(
             self.fit,
@@ -583,7 +571,7 @@ class _Model:
             condition * contact.error_estimate,
             (
                 *self._doubts(code, misfit),
-                *self._open(found, errors),
+                *self._open(found, scatter * deviations / scale, scatter if is_noisy else 0.0),
                 *self._decided_by_one(inverse / deviations[:, None], q),
             ),
         )
@@ -600,24 +588,38 @@ class _Model:
         )
         return (Notice(code, message, misfit, FALSE_ALARM),)
 
-    def _open(self, found: _Parameters, errors: Array) -> tuple[Notice, ...]:
-        """Return the warning of a lopsided interval of E*; raise InputError if it is open."""
-        if not {"e_star", "contact_point"} <= set(self.fit):
+    def _open(self, found: _Parameters, errors: Array, scatter: float) -> tuple[Notice, ...]:
+        """Return the warning that the interval of the contact point is not that of its error.
+
+        At its ends the least squares for a given contact point exceed the minimum by the quantile
+        of the F-distribution. Raises InputError if it has no end.
+        """
+        point, free = found["contact_point"], self.depth.size - len(self.fit)
+        if "contact_point" not in self.fit or "work_of_adhesion" in self.fit or not scatter:
             return ()
-        size = float(errors[self.fit.index("e_star")]) / found["e_star"]
-        if size >= _OPEN:
+        quantile = float(stdtrit(free, 0.975))
+        half = quantile * float(errors[self.fit.index("contact_point")])
+        least = free * scatter**2 * (1 + quantile**2 / free)
+
+        def within(place: float) -> bool:
+            reduced, *_ = _forces(self.profile, self.depth - place, 0.0, self.touches)
+            return self.linear(reduced)[0] <= least
+
+        if within(self.farthest):
             detail = (
-                "does not determine e_star and contact_point: start the curve nearer to the "
-                "contact point, or fit fewer parameters"
+                "does not determine contact_point: start the curve nearer to it, fit fewer "
+                "parameters, or give a longer profile"
             )
             raise InputError(("indentation_depth",), detail)
-        if size <= _LOPSIDED:
+        ends = [point + sign * half * _LOPSIDED for sign in (-1, 1)]
+        nearer = [point + sign * half / _LOPSIDED for sign in (-1, 1)]
+        if all(map(within, nearer)) and not any(within(max(end, self.farthest)) for end in ends):
             return ()
         message = (
-            f"the curve hardly determines e_star and contact_point: the standard error of e_star "
-            f"is {size:.2g} of it, and the intervals are lopsided; start nearer to the contact point"
+            "the curve hardly determines contact_point: its interval is lopsided, and those of the "
+            "other parameters too; start nearer to the contact point, or fit fewer parameters"
         )
-        return (Notice("undetermined", message, size, _LOPSIDED),)
+        return (Notice("undetermined", message),)
 
     def _decided_by_one(self, rows: Array, q: Array) -> tuple[Notice, ...]:
         """Return the warning of a point without which a standard error would grow most.

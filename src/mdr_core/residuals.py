@@ -115,7 +115,7 @@ def worst(found: Mapping[str, float]) -> tuple[str, float]:
     code = min(found, key=lambda each: found[each], default="misfit")
     if code == "correlated_noise" and found["misfit"] * len(found) < FALSE_ALARM:
         code = "misfit"
-    return code, min(1.0, len(found) * min(found.values(), default=1.0))
+    return code, min(1.0, len(found) * min(found.values()) if found else 1.0)
 
 
 def _prepared(slopes: Array, residual: Array, force: Array) -> tuple[Array, Array, Array, float]:
