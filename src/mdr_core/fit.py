@@ -39,9 +39,9 @@ PARAMETERS: Final = ("e_star", "contact_point", "force_offset", "work_of_adhesio
 SEGMENTS: Final = {"loading": 1, "unloading": -1}
 """Branches of a curve, and the direction of the depth on each."""
 # Points of the curve at which contact points are tried first, about; of these contact points some
-# lie within the curve, and others before it, from a part of its length to a multiple of it, without
-# adhesion and with. The upper part of a curve starts far from its contact point.
-_POINTS, _WITHIN, _BEFORE = 100, 50, 140
+# lie within the curve, and others before it, so many a decade, from a part of its length to a
+# multiple of it, without adhesion and with. The upper part of a curve starts far from its contact.
+_POINTS, _WITHIN, _BEFORE = 100, 50, 20
 _NEAREST, _FARTHEST, _FARTHEST_ADHESIVE = 1e-3, 1e4, 1.0
 # Retractions that are tried first, at the contact radius of the whole range of depths and over it.
 _RETRACTIONS: Final = np.logspace(-3, 0.5, 15)
@@ -436,7 +436,8 @@ class _Model:
         low, high = float(self.depth.min()), float(self.depth.max())
         tried, works, limit = np.zeros(1), np.zeros(1), self.farthest
         if "contact_point" in self.fit:
-            before = (high - low) * np.geomspace(self.reach, _NEAREST, _BEFORE)
+            count = int(_BEFORE * np.log10(self.reach / _NEAREST))
+            before = (high - low) * np.geomspace(self.reach, _NEAREST, count)
             tried = np.append(low - before, np.linspace(low, high, _WITHIN, endpoint=False))
             tried = np.append(limit, tried[tried > limit])
         if "work_of_adhesion" in self.fit:

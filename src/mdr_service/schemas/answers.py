@@ -105,8 +105,12 @@ class FitAnswer(SolvedAnswer):
     correlation: list[list[float]] = _number("Correlation of the fitted parameters")
     noise: list[float] = _force("Standard deviation of the forces")
     misfit: list[float] = _number(
-        "Probability that residuals of the right shape are as far from noise; below 0.01 with the "
-        "warning `misfit`"
+        "Probability that residuals of the right shape are as far from noise; below 0.01 with a "
+        "warning that names the likeliest fault"
+    )
+    youngs_modulus: list[float] = _pressure("Young's modulus of the sample", default=None)
+    youngs_modulus_error: list[float] = _pressure(
+        "Its standard deviation, by that of E*", default=None
     )
     indentation_depth: list[float] = _length(
         "Measured depths; with adhesion without those between the least force and the pull-off"
