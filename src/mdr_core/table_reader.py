@@ -15,7 +15,7 @@ from mdr_core.errors import InputError
 from mdr_core.typing import Array
 
 _PREFIXES: Final = {
-    **{"p": -12, "n": -9, "u": -6, "µ": -6, "m": -3, "c": -2, "d": -1, "": 0, "k": 3, "M": 6},
+    **{"": 0, "p": -12, "n": -9, "µ": -6, "u": -6, "m": -3, "c": -2, "k": 3, "M": 6},
     **{"pico": -12, "nano": -9, "micro": -6, "milli": -3, "centi": -2, "kilo": 3, "mega": 6},
 }
 # Unit -> quantity, size in SI units, and whether it takes a prefix. Pound and kilogram by
@@ -26,9 +26,9 @@ _UNITS: Final = {
     **dict.fromkeys(("Å", "angstrom", "angstroms"), ("length", 1e-10, False)),
     **dict.fromkeys(("inch", "inches", "in"), ("length", 0.0254, False)),
     **dict.fromkeys(("N", "newton", "newtons", "Newton", "Newtons"), ("force", 1.0, True)),
-    **dict.fromkeys(("gf", "g", "gram", "grams"), ("force", 9.80665e-3, True)),
+    **dict.fromkeys(("gf",), ("force", 9.80665e-3, True)),
     **dict.fromkeys(("lbf", "lb"), ("force", 4.4482216152605, False)),
-    **dict.fromkeys(("s", "sec", "min", "h", "V", "Hz", "Pa", "°C", "%", "°", "A"), ("", 1.0, True)),
+    **dict.fromkeys(("s", "sec", "V", "Hz", "Pa", "°C", "%", "°"), ("", 1.0, True)),
 }
 UNITS: Final = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "nm": 1e-9}
 """Units of length of results, in metres."""
@@ -46,6 +46,15 @@ _NAMES: Final[Mapping[str, str]] = {
     "last charge force effort vdeflection defl deflection p y",
 }
 PROFILE, CURVE = ("radius", "height"), ("depth", "force")
+_HEADS: Final = {"radius": "r", "height": "f", "depth": "d", "force": "F"}
+_MEASURES: Final = dict.fromkeys(_HEADS, "length") | {"force": "force", "area": "area"}
+# Words beside a name that leave its meaning.
+_NEUTRAL: Final = frozenset(
+    "raw corrected measured smoothed sample tip indenter normal applied axial total mean avg channel "
+    "lateral vertical surface the of on into test standard no".split()
+) | {""}
+# What is left in a name of a factor or a unit that is not understood.
+_MULTIPLIER: Final = r"/ ?\S|10 ?\^|[x×*] ?10|1e[-+]?\d|(?i:(?<![a-z])(nano|micro|milli|kilo)(?![a-z]))"
 _AREAS: Final = {"area", "a", "section", "areas"}
 _POINT: Final = r"(?i)[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?"
 _COMMA: Final = r"(?i)[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?"
@@ -179,17 +188,17 @@ def _in_units(
 ) -> list[Array]:
     with Path(file).open("rb") as stream:
         table = parse(stream.read(_LARGEST + 1), kind)
-    member, lists = ("length_unit" if kind == PROFILE else "units",), []
+    member, lists = ("length_unit" if kind == PROFILE else "force_unit",), []
     for column, values, unit, target in zip(table.taken, table.values, given, to, strict=True):
-        known = _unit(unit) if unit else None
+        known, name = (_unit(unit) if unit else None), _HEADS.get(column.quantity, "r")
         if unit and (known is None or known[0] != ("force" if column.quantity == "force" else "length")):
             raise InputError(member, f"{unit} is none of {_known(column.quantity)}")
         if known and column.unit not in {None, known[1]}:
-            detail = f"is {column.unit} in the heading of {column.quantity}, and not {unit}"
+            detail = f"is {column.unit} in the heading of {name}, and not {unit}"
             raise InputError(member, detail)
         scale = known[2] if known else column.scale
         if scale is None:
-            detail = f"is required: no heading names the unit of the {column.quantity}"
+            detail = f"is required: no heading names the unit of {name}"
             raise InputError(member, detail)
         # The product of a decimal number and a power of ten, without its rounding error.
         lists.append(np.array([float(f"{number * (scale / target):.15g}") for number in values]))
@@ -274,6 +283,8 @@ def _rows(
             numeric.append(False)
         # A number with another decimal sign is no word.
         odd = any(re.fullmatch(r"[-+]?[\d.,]+(e[-+]?\d+)?", c) for c, n in zip(cells, numeric, strict=True) if not n)
+        if comment and rows:
+            continue
         if comment or (not words and (not numeric[0] or odd) and sum(numeric) < 2):
             heading.append((number, text))
         elif text and (not words or [not each for each in numeric] == words) and sum(numeric) > 1 and not odd:
@@ -298,16 +309,17 @@ def _table(
     if separator == "," and len(cells) > 2 and whole:
         detail = "a comma may separate columns or decimals; separate columns by ; or tabs"
         raise _refuse(first, detail)
-    titles, common = _titles(heading, separator, len(cells))
-    found = [_column(titles[i], common, kind) for i in range(len(cells))]
-    places = _places(found, numeric, kind, first)
-    columns = []
-    for i, (name, quantity, unit, scale, doubt) in enumerate(found):
-        if i in places and doubt:
-            raise _refuse(titles[i][-1][0], doubt)
-        # The one left of two has no name that is known.
-        quantity = (quantity or kind[places.index(i)]) if i in places else ""
-        columns.append(Column(name, quantity, unit, scale))
+    titles = _titles(heading, separator, len(cells), kind)
+    quantities = [_quantity(title, kind) for title in titles]
+    places = _places(titles, quantities, numeric, kind, first)
+    columns = [Column(title.name, "", *(title.unit or ("", None, None))[1:]) for title in titles]
+    for i, wanted in zip(places, kind, strict=True):
+        title, quantity = titles[i], "area" if quantities[i] == "area" else wanted
+        measured = title.unit[0] if title.unit else _MEASURES[quantity]
+        if title.unknown or measured != _MEASURES[quantity]:
+            unknown = title.unknown or f"the unit {title.text}"
+            raise _refuse(title.line, f"{unknown} is none of {_known(quantity)}")
+        columns[i] = columns[i]._replace(quantity=quantity)
     values = [
         [float(cells[i].replace(",", ".").lower().replace("d", "e")) for _, cells in rows]
         for i in places
@@ -320,99 +332,125 @@ def _table(
     return Table(columns, (values[0], values[1]), taken, [line for line, _ in rows])
 
 
+class _Title(NamedTuple):
+    """Name and unit of a column, what is not understood of it, and where it stands."""
+
+    name: str = ""
+    unit: tuple[str, str, float] | None = None
+    text: str = ""
+    """The unit as it is written."""
+    unknown: str = ""
+    line: int = 0
+
+
 def _titles(
-    heading: Sequence[tuple[int, str]], separator: str, count: int
-) -> tuple[list[list[tuple[int, str]]], str | None]:
-    """Return the titles of each column with their lines, and the unit of all."""
-    titles: list[list[tuple[int, str]]] = [[] for _ in range(count)]
-    common = None
+    heading: Sequence[tuple[int, str]], separator: str, count: int, kind: Sequence[str]
+) -> list[_Title]:
+    """Return the titles of the columns: the last line of names, and the units beneath or beside.
+
+    Data of the measurement, such as `Length; 0,8 mm`, name no column.
+    """
+    titles = [_Title()] * count
     for number, text in heading:
         if len(text) > _LONGEST:
             continue
-        if (unit := re.search(r"(?i)\bunits?\b\W*(\S+)\W*$", text)) and _unit(unit[1]):
-            common = unit[1]
+        common = re.search(r"(?i)\bunits?\b\W*(\S+)\W*$", text)
+        if common and (unit := _unit(common[1])):
+            titles = [title._replace(unit=unit, text=common[1], line=number) for title in titles]
         # A unit stays with its name where blanks separate columns.
-        joined = re.sub(_LABEL, "", text)
-        joined = re.sub(r"[\[({][^\[\](){}]*[\])}]", lambda unit: unit[0].replace(" ", "~").replace(",", "~"), joined)
-        joined = re.sub(r" ?/ ?|(?<=\w) in (?=\w)", "/", re.sub(r" (?=[\[({])", "~", joined))
-        cells = _cells(joined, separator)
-        # Data of the measurement, such as `Length; 0,8 mm`, name no column.
-        if len(cells) == count and not any(re.match(r"[-+]?\d", cell) for cell in cells):
-            for title, cell in zip(titles, cells, strict=True):
-                title += [(number, cell.replace("~", " "))] if cell else []
-    return titles, common
+        joined = re.sub(r" (?=[\[({])", "~", re.sub(_LABEL, "", text))
+        joined = re.sub(r"[\[({][^\[\](){}]*[\])}]", _kept, joined)
+        cells = _cells(re.sub(r" ?/ ?|(?<=\w) in (?=\w)", "/", joined), separator)
+        cells = [cell.replace("~", " ") for cell in cells]
+        if len(cells) != count or any(re.match(r"[-+]?\d", cell) for cell in cells):
+            continue
+        units = [_unit(re.sub(r"[\[\](){}]", "", cell)) for cell in cells]
+        if all(unit or not re.search(r"\w", c) for unit, c in zip(units, cells, strict=True)):
+            for i, unit in enumerate(units):
+                if unit:
+                    titles[i] = titles[i]._replace(
+                        unit=unit, text=cells[i].strip("[](){} "), unknown="", line=number
+                    )
+            continue
+        found = [_title(cell, number) for cell in cells]
+        if any(title.unit or title.unknown or _quantity(title, kind) for title in found):
+            titles = [
+                new._replace(unit=new.unit or (old.unit if common else None)) if new.name else old
+                for new, old in zip(found, titles, strict=True)
+            ]
+    return titles
 
 
-def _column(
-    titles: Sequence[tuple[int, str]], common: str | None, kind: Sequence[str]
-) -> tuple[str, str, str | None, float | None, str]:
-    """Return name, quantity, unit, its size, and what is not understood of a column."""
-    words, unit, doubt = "", _unit(common or ""), ""
-    for _, title in titles:
-        # The unit is in brackets, or the last words: m, mN, micro_N, 10^-6 m.
-        name, bracket, inside, rest = re.fullmatch(r"([^\[({]*)([\[({]?)([^\])}]*)(.*)", title).groups()  # type: ignore[union-attr]
-        parts = [inside] if bracket else re.split(r"(?<=[^\W\d])[ _](?=\S)|[/,]", name)
-        squared = None
-        for i in range(len(parts)):
-            text = " ".join(filter(None, parts[i:])).strip()
-            squared = _unit(re.sub(_SQUARE, "", text)) if re.search(_SQUARE, text) else None
-            found = _unit(text) if not squared else ("area", *squared[1:])
-            if found and (bracket or i or len(parts) == 1 and (words or len(text) > 1)):
-                unit, doubt = found, ""
-                name = name if bracket else " ".join(parts[:i])
-                break
-        else:
-            if inside and not re.fullmatch(r"[\W_]*", inside):
-                doubt = f"the unit {inside.strip()} is none of {{}}"
-            elif re.search(r"/\s*\S|10\^|[x×*]\s*10|1e[-+]?\d|(?i:\b(nano|micro|milli|kilo))(?![a-z])", name):
-                doubt = f"“{title}” holds a factor or a unit that is not understood: write {{}}"
-        words = f"{words} {name} {rest.strip(' )]}')}".strip()
-    name = re.sub(r"[\W\d_]", "", words).lower()
-    quantity = next((q for q in kind if name in _NAMES[q].split()), "")
-    quantity = "area" if quantity == "radius" and name in _AREAS else quantity
-    if unit and unit[0] == "force" or unit and unit[0] == "length" and kind == CURVE:
-        # A known unit decides.
-        quantity = "force" if unit[0] == "force" else "depth"
-    wanted = {"area": "area", "force": "force"}.get(quantity, "length")
-    if unit and unit[0] != wanted:
-        doubt = doubt or f"the unit {unit[1]} is none of {{}}"
-        quantity = "" if unit[0] != "length" else quantity
-    doubt = doubt.format(_known(quantity))
-    return words, quantity, unit and unit[1], unit and unit[2], doubt
+def _kept(bracket: re.Match[str]) -> str:
+    return re.sub("[ ,]", "~", bracket[0])
+
+
+def _title(cell: str, line: int) -> _Title:
+    """Return a title: `r [mm]`, `r (10^-6 m)`, `r/mm`, `r, mm`, `load_micro_N` or `A [mm²]`."""
+    name, bracket, inside = re.match(r"([^\[({]*)([\[({]?)([^\])}]*)", cell).groups()  # type: ignore[union-attr]
+    parts = re.split(r"(?<=[^\W\d])[ _]|[/,]", name)
+    for i in range(1, len(parts)) if not bracket else [0]:
+        text = inside.strip() if bracket else " ".join(parts[i:]).strip()
+        squared = re.sub(_SQUARE, "", text)
+        unit = _unit(text)
+        if not unit and squared != text and (root := _unit(squared)):
+            unit = "area", *root[1:]
+        if unit:
+            return _Title(name.strip() if bracket else " ".join(parts[:i]), unit, text, "", line)
+    unknown = f"the unit {inside.strip()}" if re.search(r"\w", inside) else ""
+    if re.search(_MULTIPLIER, name):
+        unknown = f"the unit or factor in “{name.strip()}”"
+    return _Title(name.strip(), None, "", unknown, line)
+
+
+def _place(name: str, quantity: str) -> int | None:
+    """Place of a name among those of a quantity, or None; other words must be neutral."""
+    order = _NAMES[quantity].split()
+    whole = re.sub(r"[\W\d_]", "", name).lower()
+    words = [word for word in re.split(r"[\W\d_]+", name.lower()) if word not in _NEUTRAL]
+    known = [each for each in (whole, *words[:1]) if each in order]
+    return order.index(known[0]) if known and (whole in order or len(words) == 1) else None
+
+
+def _quantity(title: _Title, kind: Sequence[str]) -> str:
+    """Return the quantity of a column, "" if neither name nor unit tell it."""
+    measure = title.unit[0] if title.unit else None
+    named = next((each for each in kind if _place(title.name, each) is not None), "")
+    if named == "radius" and _AREAS & set(re.split(r"[\W\d_]+", title.name.lower())):
+        return "area"
+    if measure is None:
+        return named
+    # A known unit decides.
+    fits = [each for each in kind if _MEASURES[each] == measure]
+    return named if named in fits or (named and measure == "area") else "".join(fits[:1] * (len(fits) == 1))
 
 
 def _places(
-    found: Sequence[tuple[str, str, str | None, float | None, str]],
+    titles: Sequence[_Title],
+    quantities: Sequence[str],
     numeric: Sequence[int],
     kind: Sequence[str],
     line: int,
 ) -> list[int]:
     """Return the indices of the two columns, or an InputError that asks for their names."""
-    if len(numeric) == 2 and not any(found[i][0] for i in numeric):
+    if len(numeric) == 2 and not any(titles[i].name for i in numeric):
         return list(numeric)
-    places: list[int | None] = []
+    places = []
     for quantity in kind:
-        order = _NAMES[quantity].split()
-
-        def place(i: int, order: Sequence[str] = order) -> int:
-            name = re.sub(r"[\W\d_]", "", found[i][0]).lower()
-            return order.index(name) if name in order else len(order)
-
-        alike = {"area"} if quantity == "radius" else set()
-        named = sorted((i for i in numeric if found[i][1] in {quantity, *alike}), key=place)
-        if len(named) > 1 and place(named[0]) == place(named[1]):
-            both = " and ".join(found[i][0] for i in named[:2])
-            raise _refuse(line, f"{both} may each be the {quantity}: keep one of them")
-        places.append(named[0] if named else None)
-    if len(numeric) == 2 and places.count(None) == 1:
-        (known,) = (i for i in places if i is not None)
-        other = next(i for i in numeric if i != known)
-        places = [other if i is None else i for i in places]
-    if None in places or places[0] == places[1]:
-        heads = {"radius": "r", "height": "f", "depth": "d", "force": "F"}
-        asked = " and ".join(f"the {quantity} {heads[quantity]}" for quantity in kind)
-        raise _refuse(line, f"{len(found)} columns; name {asked} in a line above")
-    return [i for i in places if i is not None]
+        alike = {quantity, "area"} if quantity == "radius" else {quantity}
+        ranks = [(_place(titles[i].name, quantity), i) for i in numeric if quantities[i] in alike]
+        ranked = sorted((len(_NAMES[quantity]) if rank is None else rank, i) for rank, i in ranks)
+        if len(ranked) > 1 and ranked[0][0] == ranked[1][0]:
+            both = " and ".join(titles[i].name for _, i in ranked[:2])
+            raise _refuse(line, f"{both} may each be the {quantity}: name one of them {quantity}")
+        places += [i for _, i in ranked[:1]] or [-1]
+    left = [i for i in numeric if i not in places and not titles[i].unit]
+    if len(numeric) == 2 and places.count(-1) == 1 and left:
+        places[places.index(-1)] = left[0]
+    if -1 in places:
+        asked = " and ".join(f"the {quantity} {_HEADS[quantity]}" for quantity in kind)
+        raise _refuse(line, f"{len(titles)} columns; name {asked} in a line above")
+    return places
 
 
 def _unit(text: str) -> tuple[str, str, float] | None:
@@ -423,14 +461,14 @@ def _unit(text: str) -> tuple[str, str, float] | None:
     rest = re.sub(r"^[\s*·x×]+|[\s_-]", "", text[factor.end() :] if factor else text)
     for prefix, exponent in _PREFIXES.items():
         name = rest[len(prefix) :]
-        known = _UNITS.get(name) or (_UNITS.get(name.lower()) if len(name) > 2 else None)
+        known = _UNITS.get(name) or (_UNITS.get(name.lower()) if name.istitle() and len(name) > 2 else None)
         if rest.startswith(prefix) and known and (known[2] or not prefix):
             quantity, size, _ = known
             power += exponent
             symbol = {"length": "m", "force": "N"}.get(quantity, name)
             if size != 1:
                 return quantity, rest if not factor else f"10^{power} {name}", size * float(f"1e{power}")
-            named = next((p for p, e in _PREFIXES.items() if e == power and p not in "ud"), None)
+            named = next((p for p, e in _PREFIXES.items() if e == power), None)
             shown = f"10^{power} {symbol}" if named is None else f"{named}{symbol}"
             return quantity, shown, float(f"1e{power}")
     return None

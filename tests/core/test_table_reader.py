@@ -33,7 +33,7 @@ def test_tables_that_cannot_be_read_are_refused_with_the_line(file: str) -> None
     ("file", "unit", "detail"),
     [
         ("plain.txt", None, "is required: no heading names the unit of r"),
-        ("plain.txt", "inch", "inch is none of m, mm, µm, nm"),
+        ("plain.txt", "foot", "foot is none of m, mm, µm, nm"),
         ("decimal_comma.csv", "mm", "is µm in the heading of f, and not mm"),
     ],
 )
