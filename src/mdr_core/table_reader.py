@@ -116,6 +116,8 @@ class Table(NamedTuple):
     taken: tuple[Column, Column]
     lines: list[int]
     """Line of each point."""
+    notes: list[str]
+    """What was taken without a name, or computed."""
 
 
 def read_table(
@@ -306,10 +308,11 @@ def _table(
     first, cells = rows[0]
     numeric = [i for i, cell in enumerate(cells) if re.fullmatch(form, cell)]
     whole = all(re.fullmatch(r"[-+]?\d+", cells[i]) for _, cells in rows for i in numeric)
-    if separator == "," and len(cells) > 2 and whole:
+    titles = _titles(heading, separator, len(cells), kind)
+    named = any(title.name for title in titles)
+    if separator == "," and len(cells) > 2 and whole and not named:
         detail = "a comma may separate columns or decimals; separate columns by ; or tabs"
         raise _refuse(first, detail)
-    titles = _titles(heading, separator, len(cells), kind)
     quantities = [_quantity(title, kind) for title in titles]
     places = _places(titles, quantities, numeric, kind, first)
     columns = [Column(title.name, "", *(title.unit or ("", None, None))[1:]) for title in titles]
@@ -324,12 +327,21 @@ def _table(
         [float(cells[i].replace(",", ".").lower().replace("d", "e")) for _, cells in rows]
         for i in places
     ]
+    for numbers in values:
+        if not np.isfinite(numbers).all():
+            raise _refuse(rows[int(np.isinf(numbers).argmax())][0], "a number is too large")
+    notes = []
+    for i, quantity in zip(places, kind, strict=True):
+        if quantities[i] not in {quantity, "area"}:
+            which = f"“{titles[i].name}”" if titles[i].name else "without a name"
+            notes.append(f"Column {i + 1}, {which}, is taken as the {quantity}.")
     if columns[places[0]].quantity == "area":
         if negative := [line for (line, _), area in zip(rows, values[0], strict=True) if area < 0]:
             raise _refuse(negative[0], "an area is negative")
         values[0] = np.sqrt(np.array(values[0]) / np.pi).tolist()
+        notes.append("The radii are r = √(A/π) of the areas.")
     taken = columns[places[0]], columns[places[1]]
-    return Table(columns, (values[0], values[1]), taken, [line for line, _ in rows])
+    return Table(columns, (values[0], values[1]), taken, [line for line, _ in rows], notes)
 
 
 class _Title(NamedTuple):

@@ -388,6 +388,39 @@ class Health(Answer):
     version: str = Field(description="Version of the service.")
 
 
+class TableColumn(Answer):
+    """Column of a file."""
+
+    name: str = Field(description="Name without the unit, empty without a heading.")
+    unit: str | None = Field(description="Unit, of an area that of its root; null without one.")
+    quantity: str | None = Field(
+        description="`radius`, `area`, `height`, `depth` or `force`; null if it is not taken."
+    )
+
+
+class TableSegment(Answer):
+    """Branch of a curve."""
+
+    kind: Literal["loading", "unloading"] = Field(description="Direction of the depth.")
+    first: int = _number("First row, from 0")
+    last: int = _number("Last row")
+
+
+class TableAnswer(Answer):
+    """Columns of a file, and the two that are taken, in the units of the file."""
+
+    columns: list[TableColumn] = Field(description="All columns, in their order.")
+    r: list[float] = quantity("as in the file", "Radii of a profile", default=None)
+    f: list[float] = quantity("as in the file", "Heights of a profile", default=None)
+    indentation_depth: list[float] = quantity("as in the file", "Depths of a curve", default=None)
+    normal_force: list[float] = quantity("as in the file", "Forces of a curve", default=None)
+    units: list[str | None] = Field(description="Units of the two lists, null without one.")
+    scales: list[float | None] = Field(description="These units in metres or newtons.")
+    lines: list[int] = _number("Line of each point in the file, from 1")
+    notes: list[str] = Field(description="What was taken without a name, or computed.")
+    segments: list[TableSegment] = left_out("Branches of a curve, by turning points of the depth.")
+
+
 class ProblemError(Answer):
     """Invalid value of a request."""
 
