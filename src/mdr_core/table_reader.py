@@ -56,8 +56,8 @@ _NEUTRAL: Final = frozenset(
 # What is left in a name of a factor or a unit that is not understood.
 _MULTIPLIER: Final = r"/ ?\S|10 ?\^|[x×*] ?10|1e[-+]?\d|(?i:(?<![a-z])(nano|micro|milli|kilo)(?![a-z]))"
 _AREAS: Final = {"area", "a", "section", "areas"}
-_POINT: Final = r"(?i)[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?"
-_COMMA: Final = r"(?i)[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?"
+_POINT: Final = r"(?ai)[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?"
+_COMMA: Final = r"(?ai)[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?"
 _BLANKS: Final = r",? +"
 # Separator of columns, and the form of a number. Blanks separate numbers with a decimal comma
 # before commas separate columns: `0,5 1,2` holds two numbers.
