@@ -241,7 +241,9 @@ def _of_sample(found: Fit, ratio: float, indenter: Body | str) -> Fit:
         require_type("indenter", indenter, Body, 'a Body, or "rigid"')
         other = found.e_star / from_bodies([indenter, RIGID]).e_star
     if other >= 1:
-        raise InputError(("indenter",), "is more compliant than the contact: check it and the units")
+        raise InputError(
+            ("indenter",), "is more compliant than the contact: check it and the units"
+        )
     modulus = (1 - ratio) * (1 + ratio) * found.e_star / (1 - other)
     error = 0.0
     if "e_star" in found.fit:

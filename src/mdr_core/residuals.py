@@ -83,7 +83,7 @@ def misfit(depth: Array, slopes: Array, residual: Array, force: Array) -> dict[s
         return {}
     free, x, sign = depth.size - q.shape[1], rank(depth), directions(depth)
     found = {"misfit": _f_test(q, cut, _polynomials(x, min(_DEPTH, free // 3)))}
-    found["correlated_noise"] = _lag(q, cut, np.argsort(depth, kind="stable"), two_sided=True)
+    found["correlated_noise"] = _lag(q, cut, np.argsort(depth, kind="stable"))
     if min(np.sum(sign > 0), np.sum(sign < 0)) >= _FEWEST:
         even = legendre.legvander(x, max(min(_BRANCH, free // 4) - 1, 0))
         found["two_branches"] = _f_test(q, cut, sign[:, None] * even)
@@ -93,21 +93,6 @@ def misfit(depth: Array, slopes: Array, residual: Array, force: Array) -> dict[s
         mean = np.full((depth.size, 1), depth.size**-0.5)
         found["noise_grows"] = _f_test(mean, score - score.mean(), _polynomials(x, _SCATTER))
     return found
-
-
-def misfit_in_time(u: Array, slopes: Array, residual: Array, force: Array) -> dict[str, float]:
-    """Return the same for a loop, whose residuals drift, or lag behind, in their order."""
-    q, _, cut, step = _prepared(slopes, residual, force)
-    size = float(np.sqrt(np.mean(np.square(residual))))
-    if size <= ROUNDING * np.abs(force).max() or size < _ROUNDED * step:
-        return {}
-    order = np.arange(u.size)
-    branch = directions(u)[:, None] * legendre.legvander(rank(u), _BRANCH)
-    return {
-        "misfit": min(1.0, 2 * min(_f_test(q, cut, branch), _f_test(q, cut, _polynomials(rank(u), 6)))),
-        "drift": _f_test(q, cut, _polynomials(rank(order), _BRANCH)),
-        "correlated_noise": _lag(q, cut, order, two_sided=False),
-    }
 
 
 def worst(found: Mapping[str, float]) -> tuple[str, float]:
@@ -158,7 +143,7 @@ def _f_test(q: Array, r: Array, regressors: Array) -> float:
     return float(fdtrc(count, free, part / count / (rest / free)))
 
 
-def _lag(q: Array, r: Array, order: Array, *, two_sided: bool) -> float:
+def _lag(q: Array, r: Array, order: Array) -> float:
     """Probability of the correlation of neighbours (Durbin and Watson), given the slopes."""
     q, r = q[order], r[order]
     free = r.size - q.shape[1]
@@ -174,5 +159,7 @@ def _lag(q: Array, r: Array, order: Array, *, two_sided: bool) -> float:
     mean = -np.trace(inside) / free
     square = (r.size - 1) / 2 - 2 * np.sum(moved * moved) + np.sum(inside * inside)
     variance = 2 * (square - free * mean**2) / (free * (free + 2))
-    away = (float(r @ neighbours(r)) / max(float(r @ r), TINY) - mean) / np.sqrt(max(variance, TINY))
-    return float(2 * ndtr(-abs(away)) if two_sided else ndtr(-away))
+    away = (float(r @ neighbours(r)) / max(float(r @ r), TINY) - mean) / np.sqrt(
+        max(variance, TINY)
+    )
+    return float(2 * ndtr(-abs(away)))

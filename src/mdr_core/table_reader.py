@@ -4,8 +4,10 @@ Nothing is guessed: a column is that of a quantity if its unit or its name says 
 only one left of two. What is not understood is an error that names the line and the remedy.
 """
 
+import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from importlib.resources import files
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -14,47 +16,20 @@ import numpy as np
 from mdr_core.errors import InputError
 from mdr_core.typing import Array
 
-_PREFIXES: Final = {
-    **{"": 0, "p": -12, "n": -9, "µ": -6, "u": -6, "m": -3, "c": -2, "k": 3, "M": 6},
-    **{"pico": -12, "nano": -9, "micro": -6, "milli": -3, "centi": -2, "kilo": 3, "mega": 6},
-}
-# Unit -> quantity, size in SI units, and whether it takes a prefix. Pound and kilogram by
-# definition (NIST SP 811).
-_UNITS: Final = {
-    **dict.fromkeys(("m", "meter", "metre", "meters", "metres"), ("length", 1.0, True)),
-    **dict.fromkeys(("micron", "microns"), ("length", 1e-6, False)),
-    **dict.fromkeys(("Å", "angstrom", "angstroms"), ("length", 1e-10, False)),
-    **dict.fromkeys(("inch", "inches", "in"), ("length", 0.0254, False)),
-    **dict.fromkeys(("N", "newton", "newtons", "Newton", "Newtons"), ("force", 1.0, True)),
-    **dict.fromkeys(("gf",), ("force", 9.80665e-3, True)),
-    **dict.fromkeys(("lbf", "lb"), ("force", 4.4482216152605, False)),
-    **dict.fromkeys(("s", "sec", "V", "Hz", "Pa", "°C", "%", "°"), ("", 1.0, True)),
-}
+_WORDS: Final = json.loads(files("mdr_core").joinpath("table_words.json").read_text("utf-8"))
+# Prefix -> power of ten; unit -> quantity, size in SI units, and whether it takes a prefix.
+_PREFIXES, _UNITS = _WORDS["prefixes"], _WORDS["units"]
+# Names of each quantity, and words beside a name that leave its meaning.
+_NAMES, _NEUTRAL = _WORDS["names"], frozenset(_WORDS["neutral"])
 UNITS: Final = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "nm": 1e-9}
 """Units of length of results, in metres."""
-# Names of instruments and spreadsheets, in lower case without blanks; the first that is there is
-# taken. Of a tip's area function, A stands for the radius.
-_NAMES: Final[Mapping[str, str]] = {
-    "radius": "r radius radial rho x distance position lateral length weg area a section",
-    "height": "f z h hc height depth profile höhe hauteur y",
-    "depth": "d depth pd indentation indentationdepth indenterdisplacement penetrationdepth "
-    "tipsampleseparation displacement displacementintosurface extension tensileextension "
-    "compressiveextension standardweg traversenweg eindringtiefe tiefe weg profondeur enfoncement "
-    "déplacement stroke distance crosshead calcrampex h hc travel position separation x z height "
-    "heightmeasured",
-    "force": "f fn normalforce force load loadonsample standardforce standardkraft kraft prüfkraft "
-    "last charge force effort vdeflection defl deflection p y",
-}
 PROFILE, CURVE = ("radius", "height"), ("depth", "force")
 _HEADS: Final = {"radius": "r", "height": "f", "depth": "d", "force": "F"}
 _MEASURES: Final = dict.fromkeys(_HEADS, "length") | {"force": "force", "area": "area"}
-# Words beside a name that leave its meaning.
-_NEUTRAL: Final = frozenset(
-    "raw corrected measured smoothed sample tip indenter normal applied axial total mean avg channel "
-    "lateral vertical surface the of on into test standard no".split()
-) | {""}
 # What is left in a name of a factor or a unit that is not understood.
-_MULTIPLIER: Final = r"/ ?\S|10 ?\^|[x×*] ?10|1e[-+]?\d|(?i:(?<![a-z])(nano|micro|milli|kilo)(?![a-z]))"
+_MULTIPLIER: Final = (
+    r"/ ?\S|10 ?\^|[x×*] ?10|1e[-+]?\d|(?i:(?<![a-z])(nano|micro|milli|kilo)(?![a-z]))"
+)
 _AREAS: Final = {"area", "a", "section", "areas"}
 _POINT: Final = r"(?ai)[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?"
 _COMMA: Final = r"(?ai)[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?"
@@ -74,7 +49,9 @@ _LARGEST: Final = 4_000_000
 _LONGEST: Final = 4_000
 _SQUARE: Final = r"(²|\^2|\*\*2|2)$"
 # A number before a unit, such as 10^-6, 1e-6 or x10-6.
-_FACTOR: Final = r"(?i)[x×*·]?\s*(?:(1|1[.,]0*)?\s*[x×*·]?\s*10(?:\^|\*\*)?\(?([-+]\d+)\)?|1e([-+]?\d+))"
+_FACTOR: Final = (
+    r"(?i)[x×*·]?\s*(?:(1|1[.,]0*)?\s*[x×*·]?\s*10(?:\^|\*\*)?\(?([-+]\d+)\)?|1e([-+]?\d+))"
+)
 
 
 class Points(NamedTuple):
@@ -193,7 +170,9 @@ def _in_units(
     member, lists = ("length_unit" if kind == PROFILE else "force_unit",), []
     for column, values, unit, target in zip(table.taken, table.values, given, to, strict=True):
         known, name = (_unit(unit) if unit else None), _HEADS.get(column.quantity, "r")
-        if unit and (known is None or known[0] != ("force" if column.quantity == "force" else "length")):
+        if unit and (
+            known is None or known[0] != ("force" if column.quantity == "force" else "length")
+        ):
             raise InputError(member, f"{unit} is none of {_known(column.quantity)}")
         if known and column.unit not in {None, known[1]}:
             detail = f"is {column.unit} in the heading of {name}, and not {unit}"
@@ -284,12 +263,21 @@ def _rows(
             cells.append("")
             numeric.append(False)
         # A number with another decimal sign is no word.
-        odd = any(re.fullmatch(r"[-+]?[\d.,]+(e[-+]?\d+)?", c) for c, n in zip(cells, numeric, strict=True) if not n)
+        odd = any(
+            re.fullmatch(r"[-+]?[\d.,]+(e[-+]?\d+)?", c)
+            for c, n in zip(cells, numeric, strict=True)
+            if not n
+        )
         if comment and rows:
             continue
         if comment or (not words and (not numeric[0] or odd) and sum(numeric) < 2):
             heading.append((number, text))
-        elif text and (not words or [not each for each in numeric] == words) and sum(numeric) > 1 and not odd:
+        elif (
+            text
+            and (not words or [not each for each in numeric] == words)
+            and sum(numeric) > 1
+            and not odd
+        ):
             words = words or [not each for each in numeric]
             rows.append((number, cells))
         elif text:
@@ -417,7 +405,7 @@ def _title(cell: str, line: int) -> _Title:
 
 def _place(name: str, quantity: str) -> int | None:
     """Place of a name among those of a quantity, or None; other words must be neutral."""
-    order = _NAMES[quantity].split()
+    order = _NAMES[quantity]
     whole = re.sub(r"[\W\d_]", "", name).lower()
     words = [word for word in re.split(r"[\W\d_]+", name.lower()) if word not in _NEUTRAL]
     known = [each for each in (whole, *words[:1]) if each in order]
@@ -434,7 +422,11 @@ def _quantity(title: _Title, kind: Sequence[str]) -> str:
         return named
     # A known unit decides.
     fits = [each for each in kind if _MEASURES[each] == measure]
-    return named if named in fits or (named and measure == "area") else "".join(fits[:1] * (len(fits) == 1))
+    return (
+        named
+        if named in fits or (named and measure == "area")
+        else "".join(fits[:1] * (len(fits) == 1))
+    )
 
 
 def _places(
@@ -473,13 +465,19 @@ def _unit(text: str) -> tuple[str, str, float] | None:
     rest = re.sub(r"^[\s*·x×]+|[\s_-]", "", text[factor.end() :] if factor else text)
     for prefix, exponent in _PREFIXES.items():
         name = rest[len(prefix) :]
-        known = _UNITS.get(name) or (_UNITS.get(name.lower()) if name.istitle() and len(name) > 2 else None)
+        known = _UNITS.get(name) or (
+            _UNITS.get(name.lower()) if name.istitle() and len(name) > 2 else None
+        )
         if rest.startswith(prefix) and known and (known[2] or not prefix):
             quantity, size, _ = known
             power += exponent
             symbol = {"length": "m", "force": "N"}.get(quantity, name)
             if size != 1:
-                return quantity, rest if not factor else f"10^{power} {name}", size * float(f"1e{power}")
+                return (
+                    quantity,
+                    rest if not factor else f"10^{power} {name}",
+                    size * float(f"1e{power}"),
+                )
             named = next((p for p, e in _PREFIXES.items() if e == power), None)
             shown = f"10^{power} {symbol}" if named is None else f"{named}{symbol}"
             return quantity, shown, float(f"1e{power}")

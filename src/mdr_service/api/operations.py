@@ -32,7 +32,9 @@ _FILE: Final = {
     ],
     "requestBody": {
         "required": True,
-        "content": {"text/csv": {"schema": {"type": "string"}, "example": "r [mm];f [µm]\n0;0\n0,1;0,5"}},
+        "content": {
+            "text/csv": {"schema": {"type": "string"}, "example": "r [mm];f [µm]\n0;0\n0,1;0,5"}
+        },
     },
 }
 _OK: Final = Health(status="ok", version=__version__)

@@ -172,10 +172,7 @@ class Bodies(Elastic):
     def effective(self) -> materials.Material:
         """Effective moduli."""
         return materials.from_bodies(
-            [
-                as_body(each)
-                for each in self.bodies
-            ],
+            [as_body(each) for each in self.bodies],
             body_thickness=self.body_thickness,
         )
 

@@ -42,7 +42,11 @@ class FitQuery(Query):
         "points."
     )
     poissons_ratio: float = quantity(
-        "1", "Poisson's ratio ν of the sample, for its `youngs_modulus`", default=None, gt=-1, le=0.5
+        "1",
+        "Poisson's ratio ν of the sample, for its `youngs_modulus`",
+        default=None,
+        gt=-1,
+        le=0.5,
     )
     indenter: BodyOrRigid = Field(
         default="rigid", description="The body that indents the sample, for its `youngs_modulus`."
