@@ -43,6 +43,10 @@ _DIALECTS: Final = (
 _COMMENT: Final = r"\s*(#|%|!|//)+"
 # Words before the names, or the units, of columns in a comment.
 _LABEL: Final = r"(?i)^(fancyNames|columns|headings?|units?)\s*[:=]\s*"
+# Any number, with whatever decimal sign.
+_NUMBERLIKE: Final = r"(?ai)[-+]?[\d.,]*\d[.,]?([ed][-+]?\d+)?"
+# Number of a line, and its cells.
+_Row = tuple[int, list[str]]
 # Bytes of the longest file, some 10^5 points: more take seconds.
 _LARGEST: Final = 4_000_000
 # Characters of the longest heading: tables of instruments have some hundred.
@@ -72,29 +76,27 @@ class Curve(NamedTuple):
     """Forces [force]."""
 
 
-class Column(NamedTuple):
-    """A column of a file."""
+class Title(NamedTuple):
+    """Heading of a column."""
 
-    name: str
-    quantity: str
-    """Radius, area, height, depth or force, "" where it is not taken."""
-    unit: str | None
-    """Unit of the length or force, or None without one; of an area that of its root."""
-    scale: float | None
-    """Its size in SI units."""
+    name: str = ""
+    unit: tuple[str, str, float] | None = None
+    """What it measures, its name, and its size in SI units; of an area those of its root."""
+    unknown: str = ""
+    """What is not understood."""
+    line: int = 0
 
 
 class Table(NamedTuple):
     """Columns of a file, and the two lists that are taken."""
 
-    columns: list[Column]
-    values: tuple[list[float], list[float]]
+    titles: list[Title]
+    taken: dict[int, str]
+    """Quantity of the two columns by their index: radius or area, and height; depth and force."""
+    values: list[list[float]]
     """Numbers as written, of an area r = (A/pi)^(1/2)."""
-    taken: tuple[Column, Column]
     lines: list[int]
     """Line of each point."""
-    notes: list[str]
-    """What was taken without a name, or computed."""
 
 
 def read_table(
@@ -167,22 +169,20 @@ def _in_units(
 ) -> list[Array]:
     with Path(file).open("rb") as stream:
         table = parse(stream.read(_LARGEST + 1), kind)
-    member, lists = ("length_unit" if kind == PROFILE else "force_unit",), []
-    for column, values, unit, target in zip(table.taken, table.values, given, to, strict=True):
-        known, name = (_unit(unit) if unit else None), _HEADS.get(column.quantity, "r")
-        if unit and (
-            known is None or known[0] != ("force" if column.quantity == "force" else "length")
-        ):
-            raise InputError(member, f"{unit} is none of {_known(column.quantity)}")
-        if known and column.unit not in {None, known[1]}:
-            detail = f"is {column.unit} in the heading of {name}, and not {unit}"
+    member, lists = ("length_unit" if kind == PROFILE else "units",), []
+    columns = zip(table.taken.items(), table.values, given, to, kind, strict=True)
+    for (place, quantity), values, unit, target, wanted in columns:
+        heading, known = table.titles[place].unit, _unit(unit or "")
+        if unit and (not known or known[0] != _MEASURES[wanted]):
+            raise InputError(member, f"{unit} is none of {_known(wanted)}")
+        if known and heading and known[1:] != heading[1:]:
+            detail = f"is {heading[1]} in the heading of {_HEADS[wanted]}, and not {unit}"
             raise InputError(member, detail)
-        scale = known[2] if known else column.scale
-        if scale is None:
-            detail = f"is required: no heading names the unit of {name}"
+        if not (known := known or heading):
+            detail = f"is required: no heading names the unit of {_HEADS[wanted]}"
             raise InputError(member, detail)
         # The product of a decimal number and a power of ten, without its rounding error.
-        lists.append(np.array([float(f"{number * (scale / target):.15g}") for number in values]))
+        lists.append(np.array([float(f"{each * (known[2] / target):.15g}") for each in values]))
     return lists
 
 
@@ -222,7 +222,8 @@ def parse(content: bytes, kind: Sequence[str]) -> Table:
         if error:
             errors.append((len(rows), error))
         elif rows:
-            return _table(rows, heading, separator, kind, form)
+            titles = _titles(heading, separator, len(rows[0][1]), kind)
+            return _table(rows, titles, separator, kind)
     # Of the dialects, the one in which most lines are numbers is probably meant.
     raise max(errors[1:] or errors, key=lambda each: each[0])[1]
 
@@ -247,209 +248,138 @@ def _cells(text: str, separator: str) -> list[str]:
 
 def _rows(
     lines: Sequence[tuple[int, object, str]], separator: str, form: str
-) -> tuple[list[tuple[int, list[str]]], list[tuple[int, str]], InputError | None]:
+) -> tuple[list[_Row], list[tuple[int, str]], InputError | None]:
     """Return rows of numbers and words, the heading above, and the error at a line that is neither.
 
-    A column of words holds no number in any row.
+    A column of words holds no number in any row, with whatever decimal sign.
     """
-    rows: list[tuple[int, list[str]]] = []
-    heading, words = [], list[bool]()
+    rows: list[_Row] = []
+    heading, numeric = [], list[bool]()
     for number, comment, text in lines:
-        cells = _cells(text, separator)
-        numeric = [bool(re.fullmatch(form, cell)) for cell in cells]
-        while separator != _BLANKS and len(cells) > max(len(words), 2) and not cells[-1]:
-            del cells[-1], numeric[-1]
-        while words and len(cells) < len(words) and separator != _BLANKS and words[len(cells)]:
-            cells.append("")
-            numeric.append(False)
-        # A number with another decimal sign is no word.
-        odd = any(
-            re.fullmatch(r"[-+]?[\d.,]+(e[-+]?\d+)?", c)
-            for c, n in zip(cells, numeric, strict=True)
-            if not n
-        )
-        if comment and rows:
-            continue
-        if comment or (not words and (not numeric[0] or odd) and sum(numeric) < 2):
-            heading.append((number, text))
-        elif (
-            text
-            and (not words or [not each for each in numeric] == words)
-            and sum(numeric) > 1
-            and not odd
-        ):
-            words = words or [not each for each in numeric]
+        cells = _cells(text.rstrip(" \t;,"), separator)
+        if separator != _BLANKS:
+            cells += [""] * (len(numeric) - len(cells))
+        found = [bool(re.fullmatch(form, cell)) for cell in cells]
+        looks = [bool(re.fullmatch(_NUMBERLIKE, cell)) for cell in cells]
+        if comment or (not rows and sum(found) < 2 and (found != looks or not found[0])):
+            heading += [] if rows else [(number, text)]
+        elif text and sum(found) > 1 and found == looks and numeric in ([], found):
+            numeric = found
             rows.append((number, cells))
         elif text:
-            count = len(words) - sum(words) if words else max(len(cells), 2)
+            count = sum(numeric) or max(len(cells), 2)
             return rows, heading, _refuse(number, f"{count} numbers are expected")
     return rows, heading, None
 
 
-def _table(
-    rows: Sequence[tuple[int, list[str]]],
-    heading: Sequence[tuple[int, str]],
-    separator: str,
-    kind: Sequence[str],
-    form: str,
-) -> Table:
+def _table(rows: Sequence[_Row], titles: list[Title], separator: str, kind: Sequence[str]) -> Table:
     first, cells = rows[0]
-    numeric = [i for i, cell in enumerate(cells) if re.fullmatch(form, cell)]
+    numeric = [i for i, cell in enumerate(cells) if re.fullmatch(_NUMBERLIKE, cell)]
     whole = all(re.fullmatch(r"[-+]?\d+", cells[i]) for _, cells in rows for i in numeric)
-    titles = _titles(heading, separator, len(cells), kind)
-    named = any(title.name for title in titles)
-    if separator == "," and len(cells) > 2 and whole and not named:
+    if separator == "," and len(cells) > 2 and whole and not any(each.name for each in titles):
         detail = "a comma may separate columns or decimals; separate columns by ; or tabs"
         raise _refuse(first, detail)
-    quantities = [_quantity(title, kind) for title in titles]
-    places = _places(titles, quantities, numeric, kind, first)
-    columns = [Column(title.name, "", *(title.unit or ("", None, None))[1:]) for title in titles]
-    for i, wanted in zip(places, kind, strict=True):
-        title, quantity = titles[i], "area" if quantities[i] == "area" else wanted
-        measured = title.unit[0] if title.unit else _MEASURES[quantity]
-        if title.unknown or measured != _MEASURES[quantity]:
-            unknown = title.unknown or f"the unit {title.text}"
+    taken, values = {}, []
+    for i, wanted in zip(_places(titles, numeric, kind, first), kind, strict=True):
+        title = titles[i]
+        is_area = wanted == "radius" and _AREAS & set(re.split(r"[\W\d_]+", title.name.lower()))
+        taken[i] = quantity = "area" if is_area else wanted
+        if title.unknown or (title.unit and title.unit[0] != _MEASURES[quantity]):
+            unknown = title.unknown or f"the unit {(title.unit or kind)[1]}"
             raise _refuse(title.line, f"{unknown} is none of {_known(quantity)}")
-        columns[i] = columns[i]._replace(quantity=quantity)
-    values = [
-        [float(cells[i].replace(",", ".").lower().replace("d", "e")) for _, cells in rows]
-        for i in places
-    ]
-    for numbers in values:
-        if not np.isfinite(numbers).all():
-            raise _refuse(rows[int(np.isinf(numbers).argmax())][0], "a number is too large")
-    notes = []
-    for i, quantity in zip(places, kind, strict=True):
-        if quantities[i] not in {quantity, "area"}:
-            which = f"“{titles[i].name}”" if titles[i].name else "without a name"
-            notes.append(f"Column {i + 1}, {which}, is taken as the {quantity}.")
-    if columns[places[0]].quantity == "area":
-        if negative := [line for (line, _), area in zip(rows, values[0], strict=True) if area < 0]:
-            raise _refuse(negative[0], "an area is negative")
-        values[0] = np.sqrt(np.array(values[0]) / np.pi).tolist()
-        notes.append("The radii are r = √(A/π) of the areas.")
-    taken = columns[places[0]], columns[places[1]]
-    return Table(columns, (values[0], values[1]), taken, [line for line, _ in rows], notes)
-
-
-class _Title(NamedTuple):
-    """Name and unit of a column, what is not understood of it, and where it stands."""
-
-    name: str = ""
-    unit: tuple[str, str, float] | None = None
-    text: str = ""
-    """The unit as it is written."""
-    unknown: str = ""
-    line: int = 0
+        numbers = [float(re.sub("[dD]", "e", row[i].replace(",", "."))) for _, row in rows]
+        for (line, _), number in zip(rows, numbers, strict=True):
+            if not np.isfinite(number) or (is_area and number < 0):
+                raise _refuse(
+                    line, "an area is negative" if number < 0 else "a number is too large"
+                )
+        values.append(np.sqrt(np.array(numbers) / np.pi).tolist() if is_area else numbers)
+    return Table(titles, taken, values, [line for line, _ in rows])
 
 
 def _titles(
     heading: Sequence[tuple[int, str]], separator: str, count: int, kind: Sequence[str]
-) -> list[_Title]:
+) -> list[Title]:
     """Return the titles of the columns: the last line of names, and the units beneath or beside.
 
     Data of the measurement, such as `Length; 0,8 mm`, name no column.
     """
-    titles = [_Title()] * count
+    titles, common = [Title()] * count, None
     for number, text in heading:
         if len(text) > _LONGEST:
             continue
-        common = re.search(r"(?i)\bunits?\b\W*(\S+)\W*$", text)
-        if common and (unit := _unit(common[1])):
-            titles = [title._replace(unit=unit, text=common[1], line=number) for title in titles]
+        if found := re.search(r"(?i)\bunits?\b\W*(\S+)\W*$", text):
+            common = _unit(found[1]) or common
         # A unit stays with its name where blanks separate columns.
         joined = re.sub(r" (?=[\[({])", "~", re.sub(_LABEL, "", text))
-        joined = re.sub(r"[\[({][^\[\](){}]*[\])}]", _kept, joined)
+        joined = re.sub(r"[\[({][^\[\](){}]*[\])}]", lambda b: re.sub("[ ,]", "~", b[0]), joined)
         cells = _cells(re.sub(r" ?/ ?|(?<=\w) in (?=\w)", "/", joined), separator)
-        cells = [cell.replace("~", " ") for cell in cells]
+        cells = [
+            cell.replace("~", " ") for cell in cells[: count if not any(cells[count:]) else None]
+        ]
         if len(cells) != count or any(re.match(r"[-+]?\d", cell) for cell in cells):
             continue
         units = [_unit(re.sub(r"[\[\](){}]", "", cell)) for cell in cells]
+        new = [_title(cell, number) for cell in cells]
         if all(unit or not re.search(r"\w", c) for unit, c in zip(units, cells, strict=True)):
-            for i, unit in enumerate(units):
-                if unit:
-                    titles[i] = titles[i]._replace(
-                        unit=unit, text=cells[i].strip("[](){} "), unknown="", line=number
-                    )
-            continue
-        found = [_title(cell, number) for cell in cells]
-        if any(title.unit or title.unknown or _quantity(title, kind) for title in found):
-            titles = [
-                new._replace(unit=new.unit or (old.unit if common else None)) if new.name else old
-                for new, old in zip(found, titles, strict=True)
+            new = [
+                each._replace(name=old.name, unit=unit, unknown="") if unit else old
+                for each, old, unit in zip(new, titles, units, strict=True)
             ]
-    return titles
+        elif not any(
+            each.unit or each.unknown or _rank(each, q) is not None for each in new for q in kind
+        ):
+            continue
+        titles = [
+            each if each.line and (each.name or each.unit) else old
+            for each, old in zip(new, titles, strict=True)
+        ]
+    return [each if each.unit else each._replace(unit=common) for each in titles]
 
 
-def _kept(bracket: re.Match[str]) -> str:
-    return re.sub("[ ,]", "~", bracket[0])
-
-
-def _title(cell: str, line: int) -> _Title:
+def _title(cell: str, line: int) -> Title:
     """Return a title: `r [mm]`, `r (10^-6 m)`, `r/mm`, `r, mm`, `load_micro_N` or `A [mm²]`."""
     name, bracket, inside = re.match(r"([^\[({]*)([\[({]?)([^\])}]*)", cell).groups()  # type: ignore[union-attr]
     parts = re.split(r"(?<=[^\W\d])[ _]|[/,]", name)
-    for i in range(1, len(parts)) if not bracket else [0]:
-        text = inside.strip() if bracket else " ".join(parts[i:]).strip()
-        squared = re.sub(_SQUARE, "", text)
-        unit = _unit(text)
-        if not unit and squared != text and (root := _unit(squared)):
-            unit = "area", *root[1:]
-        if unit:
-            return _Title(name.strip() if bracket else " ".join(parts[:i]), unit, text, "", line)
+    for i in [0] if bracket else range(1, len(parts)):
+        if unit := _unit(inside if bracket else " ".join(parts[i:])):
+            return Title(name.strip() if bracket else " ".join(parts[:i]), unit, "", line)
     unknown = f"the unit {inside.strip()}" if re.search(r"\w", inside) else ""
     if re.search(_MULTIPLIER, name):
         unknown = f"the unit or factor in “{name.strip()}”"
-    return _Title(name.strip(), None, "", unknown, line)
+    return Title(name.strip(), None, unknown, line)
 
 
-def _place(name: str, quantity: str) -> int | None:
-    """Place of a name among those of a quantity, or None; other words must be neutral."""
-    order = _NAMES[quantity]
-    whole = re.sub(r"[\W\d_]", "", name).lower()
-    words = [word for word in re.split(r"[\W\d_]+", name.lower()) if word not in _NEUTRAL]
-    known = [each for each in (whole, *words[:1]) if each in order]
-    return order.index(known[0]) if known and (whole in order or len(words) == 1) else None
-
-
-def _quantity(title: _Title, kind: Sequence[str]) -> str:
-    """Return the quantity of a column, "" if neither name nor unit tell it."""
-    measure = title.unit[0] if title.unit else None
-    named = next((each for each in kind if _place(title.name, each) is not None), "")
-    if named == "radius" and _AREAS & set(re.split(r"[\W\d_]+", title.name.lower())):
-        return "area"
-    if measure is None:
-        return named
-    # A known unit decides.
-    fits = [each for each in kind if _MEASURES[each] == measure]
-    return (
-        named
-        if named in fits or (named and measure == "area")
-        else "".join(fits[:1] * (len(fits) == 1))
-    )
+def _rank(title: Title, quantity: str) -> int | None:
+    """Place of a column among those of a quantity, last if only its unit tells it; None if none."""
+    order, measure = _NAMES[quantity], title.unit and title.unit[0]
+    # A known unit decides, whatever the name.
+    if measure not in {None, _MEASURES[quantity]} and (measure, quantity) != ("area", "radius"):
+        return None
+    words = [w for w in re.split(r"[\W\d_]+", title.name.lower()) if w not in _NEUTRAL]
+    for name in ("".join(re.split(r"[\W\d_]+", title.name.lower())), *words[: len(words) == 1]):
+        if name in order:
+            return order.index(name)
+    return len(order) if measure and quantity in CURVE else None
 
 
 def _places(
-    titles: Sequence[_Title],
-    quantities: Sequence[str],
-    numeric: Sequence[int],
-    kind: Sequence[str],
-    line: int,
+    titles: Sequence[Title], numeric: Sequence[int], kind: Sequence[str], line: int
 ) -> list[int]:
     """Return the indices of the two columns, or an InputError that asks for their names."""
     if len(numeric) == 2 and not any(titles[i].name for i in numeric):
         return list(numeric)
     places = []
     for quantity in kind:
-        alike = {quantity, "area"} if quantity == "radius" else {quantity}
-        ranks = [(_place(titles[i].name, quantity), i) for i in numeric if quantities[i] in alike]
-        ranked = sorted((len(_NAMES[quantity]) if rank is None else rank, i) for rank, i in ranks)
+        ranks = [(_rank(titles[i], quantity), i) for i in numeric]
+        ranked = sorted((rank, i) for rank, i in ranks if rank is not None)
         if len(ranked) > 1 and ranked[0][0] == ranked[1][0]:
             both = " and ".join(titles[i].name for _, i in ranked[:2])
             raise _refuse(line, f"{both} may each be the {quantity}: name one of them {quantity}")
         places += [i for _, i in ranked[:1]] or [-1]
     left = [i for i in numeric if i not in places and not titles[i].unit]
-    if len(numeric) == 2 and places.count(-1) == 1 and left:
+    if len(numeric) == 2 and left and -1 in places:
+        # The one that is known decides the other.
         places[places.index(-1)] = left[0]
     if -1 in places:
         asked = " and ".join(f"the {quantity} {_HEADS[quantity]}" for quantity in kind)
@@ -458,27 +388,18 @@ def _places(
 
 
 def _unit(text: str) -> tuple[str, str, float] | None:
-    """Return quantity, name and size in SI units of a unit with its prefix and power of ten."""
+    """Return measure, name and size in SI units of a unit with its prefix and power of ten."""
     text = text.strip().translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
     factor = re.match(_FACTOR, text)
     power = int(factor[2] or factor[3]) if factor else 0
     rest = re.sub(r"^[\s*·x×]+|[\s_-]", "", text[factor.end() :] if factor else text)
     for prefix, exponent in _PREFIXES.items():
         name = rest[len(prefix) :]
-        known = _UNITS.get(name) or (
-            _UNITS.get(name.lower()) if name.istitle() and len(name) > 2 else None
-        )
+        known = _UNITS.get(name) or (_UNITS.get(name.lower()) if name.istitle() else None)
         if rest.startswith(prefix) and known and (known[2] or not prefix):
-            quantity, size, _ = known
-            power += exponent
-            symbol = {"length": "m", "force": "N"}.get(quantity, name)
-            if size != 1:
-                return (
-                    quantity,
-                    rest if not factor else f"10^{power} {name}",
-                    size * float(f"1e{power}"),
-                )
-            named = next((p for p, e in _PREFIXES.items() if e == power), None)
-            shown = f"10^{power} {symbol}" if named is None else f"{named}{symbol}"
-            return quantity, shown, float(f"1e{power}")
-    return None
+            measure, size, power = known[0], known[1], power + exponent
+            symbol = {"length": "m", "force": "N"}.get(measure, name) if size == 1 else name
+            sign = next((p for p, e in _PREFIXES.items() if e == power), f"10^{power} ")
+            return measure, f"{sign}{symbol}", size * float(f"1e{power}")
+    root = _unit(re.sub(_SQUARE, "", text)) if re.search(_SQUARE, text) else None
+    return ("area", *root[1:]) if root else None

@@ -16,16 +16,20 @@ _LISTS: Final = {"profile": ("r", "f"), "curve": ("indentation_depth", "normal_f
 def read(content: bytes, kind: str) -> bytes:
     """Return the response to a file, or raise InputError."""
     table = parse(content, KINDS[kind])
+    units = [each.unit or (None, None, None) for each in table.titles]
     result: dict[str, Any] = {
         "columns": [
-            {"name": each.name, "unit": each.unit, "quantity": each.quantity or None}
-            for each in table.columns
+            {"name": each.name, "unit": unit[1], "quantity": table.taken.get(i)}
+            for i, (each, unit) in enumerate(zip(table.titles, units, strict=True))
         ],
         **dict(zip(_LISTS[kind], table.values, strict=True)),
-        "units": [each.unit for each in table.taken],
-        "scales": [each.scale for each in table.taken],
+        "units": [units[i][1] for i in table.taken],
+        "scales": [units[i][2] for i in table.taken],
         "lines": table.lines,
-        "notes": list(table.notes),
+        "notes": [
+            f"Column {i + 1}, “{table.titles[i].name}”, is taken as the {quantity}."
+            for i, quantity in table.taken.items()
+        ],
     }
     if kind == "curve":
         result["segments"] = _segments(np.array(table.values[0]))
