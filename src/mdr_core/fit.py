@@ -12,7 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from math import inf, pi, sqrt
-from typing import ClassVar, Final
+from typing import ClassVar, Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -56,7 +56,7 @@ _LEAST_C, _NO_WORSE = 1e-6, 0.1
 # same effect, and the least part of a parameter in that effect. Rounding leaves 1e-16; fits that
 # determine their parameters have 1e-6 or more.
 _SAME, _PART = 1e-8, 0.1
-# Either half of an interval over that by the standard error, or the inverse, at which it is lopsided.
+# Either half of an interval over that by the standard error, or the inverse, if it is lopsided.
 _LOPSIDED: Final = 1.5
 # Growth of a standard error without a single point: at most 1.9 in curves of six points whose
 # noise is white, and 4.6 (median) where one point is taken for the pull-off.
@@ -67,8 +67,8 @@ _Parameters = dict[str, float]
 _REMEDIES: Final = {
     "misfit": "the shape, the range of the fit or the model is wrong",
     "two_branches": "loading and unloading differ: give the segment to fit",
-    "noise_grows": "two branches sorted by depth, or noise that grows with the force, which the "
-    "list cannot tell apart: keep the order of time, and give the segment",
+    "noise_grows": "two branches sorted by depth, or noise that grows with the force: keep the "
+    "order of time, and give the segment",
     "correlated_noise": "neighbouring errors are alike: filtered, drifting or of a wrong shape",
 }
 
@@ -153,7 +153,7 @@ def solve(
     body_thickness: float | None = None,
     segment: str | None = None,
     poissons_ratio: float | None = None,
-    indenter: Body | str = RIGID,
+    indenter: Body | Literal["rigid"] = "rigid",
 ) -> Fit:
     """Return the parameters of a contact that fit a measured curve best.
 
@@ -197,14 +197,7 @@ def solve(
     2e+09 3e-07
     """
     require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
-    depth, force = _curve(indentation_depth, normal_force)
-    if segment is not None:
-        if segment not in SEGMENTS:
-            raise InputError(("segment",), f"must be one of {', '.join(SEGMENTS)}")
-        used = residuals.directions(depth) == SEGMENTS[segment]
-        depth, force = depth[used], force[used]
-        if depth.size <= len(fit):
-            raise InputError(("segment",), f"{segment} holds {depth.size} points: too few")
+    depth, force = _curve(indentation_depth, normal_force, segment)
     unknown = [name for name in fit if name not in PARAMETERS]
     if unknown or not fit or len(set(fit)) < len(fit):
         raise InputError(("fit",), f"must hold some of {', '.join(PARAMETERS)}, each once")
@@ -228,17 +221,14 @@ def solve(
         result = _with_adhesion(model, noise, body_thickness)
     else:
         result = model.result(model.best(), noise, body_thickness)
-    if poissons_ratio is None:
-        return result
-    require_poissons_ratio(("poissons_ratio",), poissons_ratio)
-    return _of_sample(result, poissons_ratio, indenter)
+    return result if poissons_ratio is None else _of_sample(result, poissons_ratio, indenter)
 
 
-def _of_sample(found: Fit, ratio: float, indenter: Body | str) -> Fit:
+def _of_sample(found: Fit, ratio: float, indenter: Body | Literal["rigid"]) -> Fit:
     """Return the fit with Young's modulus of the sample, or an InputError."""
+    require_poissons_ratio(("poissons_ratio",), ratio)
     other = 0.0
     if indenter != RIGID:
-        require_type("indenter", indenter, Body, 'a Body, or "rigid"')
         other = found.e_star / from_bodies([indenter, RIGID]).e_star
     if other >= 1:
         raise InputError(
@@ -306,13 +296,22 @@ def _inverted(slopes: Array, names: Sequence[str]) -> tuple[Array, Array, Array]
     raise InputError(("indentation_depth",), f"does not determine {which}, which {told} one")
 
 
-def _curve(indentation_depth: ArrayLike, normal_force: ArrayLike) -> tuple[Array, Array]:
-    """Return depths and forces, or an InputError."""
+def _curve(
+    indentation_depth: ArrayLike, normal_force: ArrayLike, segment: str | None
+) -> tuple[Array, Array]:
+    """Return depths and forces of a branch, or an InputError."""
     depth, force = as_curve(
         "depths", indentation_depth=indentation_depth, normal_force=normal_force
     )
     if np.ptp(depth) == 0:
         raise InputError(("indentation_depth",), "must hold different depths")
+    if segment is not None:
+        if segment not in SEGMENTS:
+            raise InputError(("segment",), f"must be one of {', '.join(SEGMENTS)}")
+        used = residuals.directions(depth) == SEGMENTS[segment]
+        if np.sum(used) < 2:
+            raise InputError(("segment",), f"is not in the curve: there is no {segment}")
+        depth, force = depth[used], force[used]
     # The force falls to a pull-off too, whose least force is farther from most forces than the
     # largest one.
     height, order = force - np.median(force), np.argsort(depth, kind="stable")
@@ -415,7 +414,7 @@ class _Model:
     @property
     def deepest(self) -> float:
         """Largest depth on the profile [length]."""
-        return (self.profile.largest_loads or (inf,))[0]
+        return float((self.profile.largest_loads or (inf,))[0])
 
     @property
     def reach(self) -> float:

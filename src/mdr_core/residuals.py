@@ -12,6 +12,7 @@ from typing import Final
 
 import numpy as np
 from numpy.polynomial import legendre
+from numpy.typing import NDArray
 from scipy.special import fdtrc, ndtr, ndtri
 from scipy.stats import rankdata
 
@@ -143,7 +144,7 @@ def _f_test(q: Array, r: Array, regressors: Array) -> float:
     return float(fdtrc(count, free, part / count / (rest / free)))
 
 
-def _lag(q: Array, r: Array, order: Array) -> float:
+def _lag(q: Array, r: Array, order: NDArray[np.intp]) -> float:
     """Probability of the correlation of neighbours (Durbin and Watson), given the slopes."""
     q, r = q[order], r[order]
     free = r.size - q.shape[1]

@@ -150,8 +150,8 @@ def read_curve(file: str | Path, units: Sequence[str | None] = (None, None)) -> 
     >>> with TemporaryDirectory() as folder:
     ...     file = Path(folder, "curve.csv")
     ...     _ = file.write_text("load_micro_N,depth_nm\n0,0\n2,10\n5,20\n", "utf-8")
-    ...     read_curve(file)
-    Curve(indentation_depth=array([0.e+00, 1.e-08, 2.e-08]), normal_force=array([0.e+00, 2.e-06, 5.e-06]))
+    ...     read_curve(file).normal_force
+    array([0.e+00, 2.e-06, 5.e-06])
     """
     return Curve(*_in_units(file, CURVE, units, (1.0, 1.0)))
 
@@ -171,7 +171,7 @@ def _in_units(
         table = parse(stream.read(_LARGEST + 1), kind)
     member, lists = ("length_unit" if kind == PROFILE else "units",), []
     columns = zip(table.taken.items(), table.values, given, to, kind, strict=True)
-    for (place, quantity), values, unit, target, wanted in columns:
+    for (place, _), values, unit, target, wanted in columns:
         heading, known = table.titles[place].unit, _unit(unit or "")
         if unit and (not known or known[0] != _MEASURES[wanted]):
             raise InputError(member, f"{unit} is none of {_known(wanted)}")
