@@ -50,7 +50,8 @@ _AFTER: Final = 1.5
 # Fewest points after a pull-off: one alone would decide on offset and adhesion.
 _DETACHED: Final = 3
 # Least c = (2 pi w/E*)^(1/2) over the root of the range of depths, at which the contact is that
-# without adhesion to rounding, and has its slope in w; and the sum of squares, over the variance of the noise, that w = 0 may cost.
+# without adhesion to rounding, and has its slope in w; and the sum of squares, over the variance of
+# the noise, that w = 0 may cost.
 _LEAST_C, _NO_WORSE = 1e-6, 0.1
 # Singular value of the slopes, of unit columns, over the largest, at which two parameters have the
 # same effect, and the least part of a parameter in that effect. Rounding leaves 1e-16; fits that

@@ -411,22 +411,22 @@ class TableSegment(Answer):
     """Branch of a curve."""
 
     kind: Literal["loading", "unloading"] = Field(description="Direction of the depth.")
-    first: int = _number("First row, from 0")
-    last: int = _number("Last row")
+    first: int = Field(description="First row, from 0.")
+    last: int = Field(description="Last row.")
 
 
 class TableAnswer(Answer):
     """Columns of a file, and the two that are taken, in the units of the file."""
 
     columns: list[TableColumn] = Field(description="All columns, in their order.")
-    r: list[float] = quantity("as in the file", "Radii of a profile", default=None)
-    f: list[float] = quantity("as in the file", "Heights of a profile", default=None)
-    indentation_depth: list[float] = quantity("as in the file", "Depths of a curve", default=None)
-    normal_force: list[float] = quantity("as in the file", "Forces of a curve", default=None)
+    r: list[float] = left_out("Radii of a profile.")
+    f: list[float] = left_out("Heights of a profile.")
+    indentation_depth: list[float] = left_out("Depths of a curve.")
+    normal_force: list[float] = left_out("Forces of a curve.")
     units: list[str | None] = Field(description="Units of the two lists, null without one.")
     scales: list[float | None] = Field(description="These units in metres or newtons.")
-    lines: list[int] = _number("Line of each point in the file, from 1")
-    notes: list[str] = Field(description="What was taken without a name, or computed.")
+    lines: list[int] = Field(description="Line of each point in the file, from 1.")
+    notes: list[str] = Field(description="Which columns are taken.")
     segments: list[TableSegment] = left_out("Branches of a curve, by turning points of the depth.")
 
 
