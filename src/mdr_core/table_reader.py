@@ -302,7 +302,7 @@ def _titles(
 ) -> list[Title]:
     """Return the titles of the columns: the last line of names, and the units beneath or beside.
 
-    Data of the measurement, such as `Length; 0,8 mm`, name no column.
+    Data of the measurement, such as `Length; 0,8 mm`, name no column; the last line does.
     """
     titles, common = [Title()] * count, None
     for number, text in heading:
@@ -326,7 +326,7 @@ def _titles(
                 each._replace(name=old.name, unit=unit, unknown="") if unit else old
                 for each, old, unit in zip(new, titles, units, strict=True)
             ]
-        elif not any(
+        elif number != heading[-1][0] and not any(
             each.unit or each.unknown or _rank(each, q) is not None for each in new for q in kind
         ):
             continue
@@ -341,9 +341,12 @@ def _title(cell: str, line: int) -> Title:
     """Return a title: `r [mm]`, `r (10^-6 m)`, `r/mm`, `r, mm`, `load_micro_N` or `A [mm²]`."""
     name, bracket, inside = re.match(r"([^\[({]*)([\[({]?)([^\])}]*)", cell).groups()  # type: ignore[union-attr]
     parts = re.split(r"(?<=[^\W\d])[ _]|[/,]", name)
-    for i in [0] if bracket else range(1, len(parts)):
-        if unit := _unit(inside if bracket else " ".join(parts[i:])):
-            return Title(name.strip() if bracket else " ".join(parts[:i]), unit, "", line)
+    # The unit is what follows the name, or a word within it: Defl_nN_Ex.
+    ends = [(i, len(parts)) for i in range(1, len(parts))]
+    ends += [(i, i + 1) for i in range(1, len(parts)) if len(parts[i]) > 1]
+    for i, end in [(len(parts), len(parts))] if bracket else ends:
+        if unit := _unit(inside if bracket else " ".join(parts[i:end])):
+            return Title(" ".join(parts[:i] + parts[end:]).strip(), unit, "", line)
     unknown = f"the unit {inside.strip()}" if re.search(r"\w", inside) else ""
     if re.search(_MULTIPLIER, name):
         unknown = f"the unit or factor in “{name.strip()}”"
