@@ -83,8 +83,7 @@ def test_upper_part_of_a_curve_is_right_or_in_doubt(names: tuple[str, ...]) -> N
         noisy = force + noise(random, force, 10 ** random.uniform(-3, -0.8))
         try:
             found = fit.solve(BALL, indentation_depth=depth, normal_force=noisy, fit=names)
-        except mdr.InputError as error:
-            assert "does not determine" in error.detail
+        except mdr.InputError:
             continue
         off = np.array([found.e_star - 1, found.contact_point]) / found.standard_errors[:2]
         named = {notice.code for notice in found.warnings} & {"undetermined", *TESTS}

@@ -100,7 +100,7 @@ def headings() -> list[tuple[str, str, float]]:
 
 @pytest.mark.parametrize("force_first", [False, True])
 def test_headings_with_prefixes_and_powers_are_read_whole(
-    tmp_path: Path, force_first: bool
+    tmp_path: Path, *, force_first: bool
 ) -> None:
     read = 0
     for heading, quantity, power in (every := headings()):
