@@ -1,9 +1,9 @@
 """Operation of the service, its documentation and the catalogue of profiles."""
 
 from importlib.resources import files
-from typing import Final
+from typing import Annotated, Final
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter, Query, Request
 from prometheus_client import generate_latest
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
@@ -21,22 +21,9 @@ router = APIRouter(responses=failures(problems.HEADERS_TOO_LARGE))
 _DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("utf-8")
 # The text format of Prometheus.
 _METRICS: Final = "text/plain; version=0.0.4; charset=utf-8"
-_FILE: Final = {
-    "parameters": [
-        {
-            "name": "as",
-            "in": "query",
-            "description": "What the file holds: radius and height, or depth and force.",
-            "schema": {"type": "string", "enum": [*tables.KINDS], "default": "profile"},
-        }
-    ],
-    "requestBody": {
-        "required": True,
-        "content": {
-            "text/csv": {"schema": {"type": "string"}, "example": "r [mm];f [µm]\n0;0\n0,1;0,5"}
-        },
-    },
-}
+_AS: Final = "`profile` (radius and height) or `curve` (depth and force)"
+_EXAMPLE: Final = {"schema": {"type": "string"}, "example": "r [mm];f [µm]\n0;0\n0,1;0,5"}
+_FILE: Final = {"requestBody": {"required": True, "content": {"text/csv": _EXAMPLE}}}
 _OK: Final = Health(status="ok", version=__version__)
 _CATALOGUE: Final = Catalogue(
     profiles=[
@@ -75,12 +62,13 @@ async def list_profiles() -> Catalogue:
     responses=FILE_FAILURES,
     openapi_extra=_FILE,
 )
-async def read_table(request: Request) -> Response:
+async def read_table(
+    request: Request, kind: Annotated[str, Query(alias="as", description=_AS)] = "profile"
+) -> Response:
     """Read a text file with headings, units, decimal commas and further columns.
 
     Nothing is guessed: what is not understood is rejected, with its line and the remedy.
     """
-    kind = request.query_params.get("as", "profile")
     if kind not in tables.KINDS:
         raise problems.invalid([("/as", f"must be one of {', '.join(tables.KINDS)}")])
     content = await read_body(request, any_type=True)
