@@ -530,7 +530,7 @@ class _Model:
             "force_offset": np.ones_like(forces),
             "work_of_adhesion": by_work,
         }
-        slopes = np.reshape([columns[name] for name in self.fit], (len(self.fit), -1)).T
+        slopes = np.reshape([columns[name] for name in self.fit], (len(self.fit), forces.size)).T
         return e_star * forces + offset, slopes
 
     def result(self, found: _Parameters, noise: float | None, body_thickness: float | None) -> Fit:

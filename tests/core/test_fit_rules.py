@@ -133,6 +133,16 @@ def test_no_adhesion_is_held_at_zero_and_said() -> None:
     assert np.mean(covered, axis=0).min() >= 0.85
 
 
+def test_adhesion_alone_is_held_at_zero() -> None:
+    depth = np.linspace(0, 1, 40)
+    force = hertz(depth) + noise(np.random.default_rng(110), hertz(depth), 0.01)
+    found = fit.solve(
+        BALL, indentation_depth=depth, normal_force=force + 0.01, fit=["work_of_adhesion"], e_star=1
+    )
+    assert {"bound"} <= {notice.code for notice in found.warnings}
+    assert found.standard_errors.min() > 0
+
+
 def test_point_that_decides_alone_is_named() -> None:
     # The contact, and a single point far before it, on which the offset rests.
     depth = np.append(-1.0, np.linspace(0.9, 1, 20))
