@@ -15,6 +15,7 @@ import numpy as np
 
 from mdr_core.errors import InputError
 from mdr_core.typing import Array
+from mdr_core.validation import require_type
 
 _WORDS: Final = json.loads(files("mdr_core").joinpath("table_words.json").read_text("utf-8"))
 # Prefix -> power of ten; unit -> quantity, size in SI units, and whether it takes a prefix.
@@ -167,6 +168,7 @@ def metres(name: str) -> float:
 def _in_units(
     file: str | Path, kind: Sequence[str], given: Sequence[str | None], to: Sequence[float]
 ) -> list[Array]:
+    require_type("file", file, str | Path, "the name of a file")
     with Path(file).open("rb") as stream:
         table = parse(stream.read(_LARGEST + 1), kind)
     member, lists = ("length_unit" if kind == PROFILE else "units",), []

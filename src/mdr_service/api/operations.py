@@ -7,7 +7,7 @@ from fastapi import APIRouter, Query, Request
 from prometheus_client import generate_latest
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
-from mdr_core import __version__, profiles
+from mdr_core import COMPILED, __version__, profiles
 from mdr_service import health, observability, problems, tables
 from mdr_service.api.documentation import FILE_FAILURES, PAGE_HEADERS, failures
 from mdr_service.middleware import read_body
@@ -24,7 +24,7 @@ _METRICS: Final = "text/plain; version=0.0.4; charset=utf-8"
 _AS: Final = "`profile` (radius and height) or `curve` (depth and force)"
 _EXAMPLE: Final = {"schema": {"type": "string"}, "example": "r [mm];f [µm]\n0;0\n0,1;0,5"}
 _FILE: Final = {"requestBody": {"required": True, "content": {"text/csv": _EXAMPLE}}}
-_OK: Final = Health(status="ok", version=__version__)
+_OK: Final = Health(status="ok", version=__version__, compiled=COMPILED)
 _CATALOGUE: Final = Catalogue(
     profiles=[
         ProfileKind(
