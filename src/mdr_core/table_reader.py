@@ -8,6 +8,7 @@ import json
 import re
 from collections.abc import Sequence
 from importlib.resources import files
+from math import isfinite
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -262,7 +263,10 @@ def _rows(
         if separator != _BLANKS:
             cells += [""] * (len(numeric) - len(cells))
         found = [bool(re.fullmatch(form, cell)) for cell in cells]
-        looks = [bool(re.fullmatch(_NUMBERLIKE, cell)) for cell in cells]
+        looks = [
+            each or bool(re.fullmatch(_NUMBERLIKE, cell))
+            for each, cell in zip(found, cells, strict=True)
+        ]
         if comment or (not rows and sum(found) < 2 and (found != looks or not found[0])):
             heading += [] if rows else [(number, text)]
         elif text and sum(found) > 1 and found == looks and numeric in ([], found):
@@ -291,7 +295,7 @@ def _table(rows: Sequence[_Row], titles: list[Title], separator: str, kind: Sequ
             raise _refuse(title.line, f"{unknown} is none of {_known(quantity)}")
         numbers = [float(re.sub("[dD]", "e", row[i].replace(",", "."))) for _, row in rows]
         for (line, _), number in zip(rows, numbers, strict=True):
-            if not np.isfinite(number) or (is_area and number < 0):
+            if not isfinite(number) or (is_area and number < 0):
                 raise _refuse(
                     line, "an area is negative" if number < 0 else "a number is too large"
                 )
