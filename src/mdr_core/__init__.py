@@ -51,7 +51,7 @@ from mdr_core.profiles import (
     TruncatedCone,
     TruncatedParaboloid,
 )
-from mdr_core.table_reader import read_table
+from mdr_core.table_reader import read_curve, read_table
 
 __version__: Final = "0.1.0"
 COMPILED: Final = not _kernel.endswith(".py")
@@ -94,6 +94,7 @@ __all__ = [
     "hysteresis",
     "impact",
     "normal",
+    "read_curve",
     "read_table",
     "subsurface",
     "tangential",

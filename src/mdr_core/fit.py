@@ -12,41 +12,66 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from math import inf, pi, sqrt
-from typing import ClassVar, Final
+from typing import ClassVar, Final, Literal
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
-from scipy.special import chdtrc, fdtrc
+from scipy.special import chdtrc, fdtrc, stdtrit
 
-from mdr_core import adhesion, normal, validity
-from mdr_core.doubles import EPS, TINY
+from mdr_core import adhesion, normal, residuals, validity
+from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
-from mdr_core.materials import Material
+from mdr_core.materials import RIGID, Body, Material, from_bodies
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
+from mdr_core.residuals import FALSE_ALARM, ROUNDING
 from mdr_core.typing import Array, Flags
 from mdr_core.validation import (
     as_curve,
+    require_poissons_ratio,
     require_single_positive,
     require_type,
 )
 
 PARAMETERS: Final = ("e_star", "contact_point", "force_offset", "work_of_adhesion")
 """Quantities that can be fitted."""
-# Contact points that are tried first, at points of the curve of about this number.
-_TRIED: Final = 100
+SEGMENTS: Final = {"loading": 1, "unloading": -1}
+"""Branches of a curve, and the direction of the depth on each."""
+# Points of the curve at which contact points are tried first, about; of these contact points some
+# lie within the curve, and others before it, so many a decade, from a part of its length to a
+# multiple of it, without adhesion and with. The upper part of a curve starts far from its contact.
+_POINTS, _WITHIN, _BEFORE = 100, 50, 20
+_NEAREST, _FARTHEST, _FARTHEST_ADHESIVE = 1e-3, 1e4, 1.0
 # Retractions that are tried first, at the contact radius of the whole range of depths and over it.
 _RETRACTIONS: Final = np.logspace(-3, 0.5, 15)
 # Multiple of the pull-off depth beyond which no point is in contact.
 _AFTER: Final = 1.5
-# Polynomials over the depth that the residuals of a right shape do not contain, and the probability
-# of a warning that is false.
-_DEGREES, _FALSE_ALARM = 8, 0.01
+# Fewest points after a pull-off: one alone would decide on offset and adhesion.
+_DETACHED: Final = 3
+# Least c = (2 pi w/E*)^(1/2) over the root of the range of depths, at which the contact is that
+# without adhesion to rounding, and has its slope in w; and the sum of squares, over the variance of
+# the noise, that w = 0 may cost.
+_LEAST_C, _NO_WORSE = 1e-6, 0.1
+# Singular value of the slopes, of unit columns, over the largest, at which two parameters have the
+# same effect, and the least part of a parameter in that effect. Rounding leaves 1e-16; fits that
+# determine their parameters have 1e-6 or more.
+_SAME, _PART = 1e-8, 0.1
+# Either half of an interval over that by the standard error, or the inverse, if it is lopsided.
+_LOPSIDED: Final = 1.5
+# Growth of a standard error without a single point: at most 1.9 in curves of six points whose
+# noise is white, and 4.6 (median) where one point is taken for the pull-off.
+_ONE_POINT: Final = 2.5
+# Quantile of a one-sided limit of 95 %.
+_LIMIT: Final = 1.645
 _Parameters = dict[str, float]
-# Scatter over the largest force that is rounding error.
-_ROUNDING: Final = 1e-11
+_REMEDIES: Final = {
+    "misfit": "the shape, the range of the fit or the model is wrong",
+    "two_branches": "loading and unloading differ: give the segment to fit",
+    "noise_grows": "two branches sorted by depth, or noise that grows with the force: keep the "
+    "order of time, and give the segment",
+    "correlated_noise": "neighbouring errors are alike: filtered, drifting or of a wrong shape",
+}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -82,6 +107,12 @@ class Fit(validity.ContactResults):
     """Probability that residuals of the right shape are as far from noise as these [1]."""
     error_estimate: float
     """Bound on the numerical error of the parameters, over their standard errors or sizes [1]."""
+    notices: tuple[Notice, ...]
+    """Warnings about the residuals and the parameters."""
+    youngs_modulus: float | None = None
+    """E of the sample [pressure], None without its Poisson's ratio."""
+    youngs_modulus_error: float | None = None
+    """Standard deviation of E by that of E* [pressure]."""
     quantities: ClassVar[tuple[str, ...]] = (
         "fit",
         "e_star",
@@ -92,6 +123,8 @@ class Fit(validity.ContactResults):
         "correlation",
         "noise",
         "misfit",
+        "youngs_modulus",
+        "youngs_modulus_error",
         "indentation_depth",
         "normal_force",
         "residual",
@@ -107,17 +140,7 @@ class Fit(validity.ContactResults):
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        found = list(self.normal.warnings_without_bodies)
-        if self.misfit < _FALSE_ALARM:
-            left = " and ".join(name for name in PARAMETERS[2:] if name not in self.fit)
-            remedy = f"; fit {left} too, if the curve has them" if left else ""
-            message = (
-                f"the residuals are not noise (probability {self.misfit:.1g}): the shape, the "
-                "range of the fit or the model is wrong, and the standard errors do not hold"
-                f"{remedy}"
-            )
-            found.append(Notice("misfit", message, self.misfit, _FALSE_ALARM))
-        return tuple(found)
+        return *self.normal.warnings_without_bodies, *self.notices
 
 
 def solve(
@@ -129,6 +152,9 @@ def solve(
     e_star: float | None = None,
     noise: float | None = None,
     body_thickness: float | None = None,
+    segment: str | None = None,
+    poissons_ratio: float | None = None,
+    indenter: Body | Literal["rigid"] = "rigid",
 ) -> Fit:
     """Return the parameters of a contact that fit a measured curve best.
 
@@ -146,6 +172,11 @@ def solve(
     e_star : effective modulus, needed unless it is fitted [pressure].
     noise : standard deviation of the forces, by default that of the residuals [force].
     body_thickness : see `from_bodies` [length].
+    segment : "loading" or "unloading", by the direction of the depth in the order of the curve; by
+        default all points.
+    poissons_ratio : Poisson's ratio of the sample [1], for its Young's modulus
+        E = (1 - nu^2)/(1/E* - 1/E_i*).
+    indenter : the other body, of E_i*.
 
     Returns
     -------
@@ -154,7 +185,8 @@ def solve(
     Raises
     ------
     InputError : lists of different lengths, too few points in contact, forces that fall with the
-        depth, or depths beyond the end of the profile.
+        depth, depths beyond the end of the profile, parameters that the curve does not determine,
+        or an indenter that is softer than the contact.
 
     Examples
     --------
@@ -166,7 +198,7 @@ def solve(
     2e+09 3e-07
     """
     require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
-    depth, force = _curve(indentation_depth, normal_force)
+    depth, force = _curve(indentation_depth, normal_force, segment)
     unknown = [name for name in fit if name not in PARAMETERS]
     if unknown or not fit or len(set(fit)) < len(fit):
         raise InputError(("fit",), f"must hold some of {', '.join(PARAMETERS)}, each once")
@@ -186,17 +218,101 @@ def solve(
         place = ("indentation_depth", int(depth.argmax()))
         raise InputError(place, "lies beyond the end of the profile: give a longer one")
     model = _Model(profile, depth, force, tuple(fit), e_star, np.ones(depth.size, dtype=bool))
-    model, found = _adhesive(model) if "work_of_adhesion" in fit else (model, model.best())
-    return model.result(found, noise, body_thickness)
+    if "work_of_adhesion" in fit:
+        result = _with_adhesion(model, noise, body_thickness)
+    else:
+        result = model.result(model.best(), noise, body_thickness)
+    return result if poissons_ratio is None else _of_sample(result, poissons_ratio, indenter)
 
 
-def _curve(indentation_depth: ArrayLike, normal_force: ArrayLike) -> tuple[Array, Array]:
-    """Return depths and forces, or an InputError."""
+def _of_sample(found: Fit, ratio: float, indenter: Body | Literal["rigid"]) -> Fit:
+    """Return the fit with Young's modulus of the sample, or an InputError."""
+    require_poissons_ratio(("poissons_ratio",), ratio)
+    other = 0.0
+    if indenter != RIGID:
+        other = found.e_star / from_bodies([indenter, RIGID]).e_star
+    if other >= 1:
+        raise InputError(
+            ("indenter",), "is more compliant than the contact: check it and the units"
+        )
+    modulus = (1 - ratio) * (1 + ratio) * found.e_star / (1 - other)
+    error = 0.0
+    if "e_star" in found.fit:
+        error = float(found.standard_errors[found.fit.index("e_star")]) / found.e_star
+    return replace(
+        found, youngs_modulus=modulus, youngs_modulus_error=modulus * error / (1 - other)
+    )
+
+
+def _with_adhesion(curve: "_Model", noise: float | None, body_thickness: float | None) -> Fit:
+    """Return the fit with adhesion, or with w held at 0 where this is as likely."""
+    others = tuple(name for name in curve.fit if name != "work_of_adhesion")
+    model, found = _adhesive(curve)
+    least, free = model.squares(found), model.depth.size - len(curve.fit)
+    least = max(least, free * (ROUNDING * float(np.abs(model.force).max())) ** 2)
+    without = replace(model, fit=others)
+    at_zero = inf
+    # Without adhesion a curve of tension alone does not rise.
+    with suppress(InputError):
+        at_zero = without.squares(without.best())
+    if at_zero - least > _NO_WORSE * least / free:
+        return model.result(found, noise, body_thickness)
+    whole = replace(curve, fit=others)
+    values = whole.best()
+    held = whole.result(values, noise, body_thickness)
+    least_work = curve.least_ratio * held.e_star
+    inverse, scale, _ = _inverted(curve.at(values | {"work_of_adhesion": least_work})[1], curve.fit)
+    place = curve.fit.index("work_of_adhesion")
+    error = held.noise * float(np.linalg.norm(inverse[place]) / scale[place])
+    work = _LIMIT * error
+    errors = np.insert(held.standard_errors, place, error)
+    correlation = np.insert(np.insert(held.correlation, place, 0.0, axis=0), place, 0.0, axis=1)
+    correlation[place, place] = 1.0
+    message = (
+        f"no adhesion is seen: work_of_adhesion is held at 0, and is below {work:.3g} (95 %); the "
+        "other standard errors hold for this"
+    )
+    notices = (*held.notices, Notice("bound", message, work, None))
+    return replace(
+        held, fit=curve.fit, standard_errors=errors, correlation=correlation, notices=notices
+    )
+
+
+def _inverted(slopes: Array, names: Sequence[str]) -> tuple[Array, Array, Array]:
+    """Return the inverse triangle of slopes of unit columns, their sizes, and orthonormal slopes.
+
+    Raises InputError if the curve cannot tell parameters apart.
+    """
+    scale = np.linalg.norm(slopes, axis=0)
+    lost = list(np.array(names)[~(scale > 0)])
+    if not lost and np.isfinite(slopes).all():
+        q, triangle = np.linalg.qr(slopes / scale)
+        _, size, effects = np.linalg.svd(triangle)
+        if not size.size or size[-1] >= _SAME * size[0]:
+            # A triangle, because the square of the matrix would lose half of the digits.
+            return np.linalg.inv(triangle), scale, q
+        lost = [name for name, part in zip(names, effects[-1], strict=True) if abs(part) > _PART]
+    which = " and ".join(lost or names)
+    told = "cannot be told apart: give" if len(lost) > 1 else "has no effect: leave out"
+    raise InputError(("indentation_depth",), f"does not determine {which}, which {told} one")
+
+
+def _curve(
+    indentation_depth: ArrayLike, normal_force: ArrayLike, segment: str | None
+) -> tuple[Array, Array]:
+    """Return depths and forces of a branch, or an InputError."""
     depth, force = as_curve(
         "depths", indentation_depth=indentation_depth, normal_force=normal_force
     )
     if np.ptp(depth) == 0:
         raise InputError(("indentation_depth",), "must hold different depths")
+    if segment is not None:
+        if segment not in SEGMENTS:
+            raise InputError(("segment",), f"must be one of {', '.join(SEGMENTS)}")
+        used = residuals.directions(depth) == SEGMENTS[segment]
+        if np.sum(used) < 2:
+            raise InputError(("segment",), f"is not in the curve: there is no {segment}")
+        depth, force = depth[used], force[used]
     # The force falls to a pull-off too, whose least force is farther from most forces than the
     # largest one.
     height, order = force - np.median(force), np.argsort(depth, kind="stable")
@@ -237,21 +353,23 @@ def _adhesive(curve: "_Model") -> "tuple[_Model, _Parameters]":
         return replace(curve, depth=depth[used], force=force[used], touches=used >= count)
 
     jump = int(np.argmin(np.diff(force[: least + 1]))) + 1 if least else 0
+    jump = jump if jump >= _DETACHED else 0
     touching, whole = without_others(0), without_others(jump)
     found = touching.best()
     if not jump:
         return touching, found
     with suppress(InputError):
         joint, free = whole.best(), touching.depth.size - len(curve.fit)
-        rounding = free * (_ROUNDING * float(np.abs(force).max())) ** 2
+        rounding = free * (ROUNDING * float(np.abs(force).max())) ** 2
         squares = max(touching.squares(found), rounding)
         more = max(whole.squares(joint) - squares, 0.0)
-        if fdtrc(jump, free, more / jump / (squares / free)) > _FALSE_ALARM:
+        if fdtrc(jump, free, more / jump / (squares / free)) > FALSE_ALARM:
             return whole, joint
     c = sqrt(2 * pi * found["work_of_adhesion"] / found["e_star"])
     pull_off = adhesion.Curve(curve.profile, c).least["indentation_depth"]
     after = int(np.searchsorted(depth, found["contact_point"] + _AFTER * pull_off))
-    model = without_others(min(after, jump))
+    after = min(after, jump)
+    model = without_others(after if after >= _DETACHED else 0)
     return model, model.best()
 
 
@@ -294,21 +412,41 @@ class _Model:
     touches: Flags
     """Points that are not after a pull-off."""
 
+    @property
+    def deepest(self) -> float:
+        """Largest depth on the profile [length]."""
+        return float((self.profile.largest_loads or (inf,))[0])
+
+    @property
+    def reach(self) -> float:
+        """Distance of the first contact point from the curve, over the length of the curve [1]."""
+        return _FARTHEST_ADHESIVE if "work_of_adhesion" in self.fit else _FARTHEST
+
+    @property
+    def farthest(self) -> float:
+        """First contact point that is tried [length]; the curve has to stay on the profile."""
+        before = float(self.depth.min()) - self.reach * float(np.ptp(self.depth))
+        return max(before, float(self.depth.max()) - self.deepest)
+
+    @property
+    def least_ratio(self) -> float:
+        """Least w/E* that is fitted [length]."""
+        return _LEAST_C**2 * float(np.ptp(self.depth)) / (2 * pi)
+
     def best(self) -> _Parameters:
         """Return the parameters of the least sum of squares, or an InputError."""
         low, high = float(self.depth.min()), float(self.depth.max())
-        limits, tried, works = (0.0, 0.0), np.zeros(1), np.zeros(1)
-        deepest = (
-            inf if self.profile.largest_loads is None else float(self.profile.largest_loads[0])
-        )
+        tried, works, limit = np.zeros(1), np.zeros(1), self.farthest
         if "contact_point" in self.fit:
-            # From as far before the curve as it is long; the curve has to stay on the profile.
-            limits = max(2 * low - high, high - deepest), high
-            tried = np.linspace(*limits, _TRIED, endpoint=False)
+            count = int(_BEFORE * np.log10(self.reach / _NEAREST))
+            before = (high - low) * np.geomspace(self.reach, _NEAREST, count)
+            tried = np.append(low - before, np.linspace(low, high, _WITHIN, endpoint=False))
+            tried = np.append(limit, tried[tried > limit])
         if "work_of_adhesion" in self.fit:
-            reach = normal.solve(self.profile, 1.0, indentation_depth=min(high - low, deepest))
-            works = (_RETRACTIONS * (high - low)) ** 2 / (2 * pi * reach.contact_radius)
-        some = np.argsort(self.depth)[:: max(1, self.depth.size // _TRIED)]
+            most = min(high - low, self.deepest)
+            reached = normal.solve(self.profile, 1.0, indentation_depth=most)
+            works = (_RETRACTIONS * (high - low)) ** 2 / (2 * pi * reached.contact_radius)
+        some = np.argsort(self.depth)[:: max(1, self.depth.size // _POINTS)]
         used = {name: getattr(self, name)[some] for name in ("depth", "force", "touches")}
         coarse = replace(self, **used)
         starts: list[tuple[float, _Parameters]] = []
@@ -323,7 +461,7 @@ class _Model:
         if start["e_star"] <= 0:
             detail = "does not rise as on this profile: compression is positive, reverse its sign"
             raise InputError(("normal_force",), detail)
-        return self.refined(start, *limits)
+        return self.refined(start, limit, high) if self.fit else start
 
     def squares(self, parameters: _Parameters) -> float:
         """Return the sum of squares of the residuals."""
@@ -348,9 +486,10 @@ class _Model:
         low, high : limits of the contact point [length].
         """
         size = float(np.abs(self.force).max()) or 1.0
-        units = start | {"contact_point": high - low, "force_offset": size}
+        units = start | {"contact_point": float(np.ptp(self.depth)), "force_offset": size}
         unit = np.array([units[name] for name in self.fit])
         ends = {"contact_point": (low, high), "force_offset": (-inf, inf)}
+        ends["work_of_adhesion"] = self.least_ratio * start["e_star"], inf
         bounds = np.transpose([ends.get(name, (0.0, inf)) for name in self.fit]) / unit
 
         def at(x: Array) -> _Parameters:
@@ -391,7 +530,7 @@ class _Model:
             "force_offset": np.ones_like(forces),
             "work_of_adhesion": by_work,
         }
-        slopes = np.column_stack([columns[name] for name in self.fit])
+        slopes = np.reshape([columns[name] for name in self.fit], (len(self.fit), forces.size)).T
         return e_star * forces + offset, slopes
 
     def result(self, found: _Parameters, noise: float | None, body_thickness: float | None) -> Fit:
@@ -407,17 +546,18 @@ class _Model:
         residual = self.force - forces
         free = self.depth.size - len(self.fit)
         scatter = float(np.sqrt(np.sum(np.square(residual)) / free))
-        scale = np.linalg.norm(slopes, axis=0)
-        # The inverse of a triangle, because the square of the matrix would lose half of the digits.
-        inverse = np.linalg.inv(np.linalg.qr(slopes / scale, mode="r"))
+        inverse, scale, q = _inverted(slopes, self.fit)
         deviations = np.linalg.norm(inverse, axis=1)
         material = Material(found["e_star"], body_thickness=body_thickness)
         work = found["work_of_adhesion"]
         solve = partial(adhesion.solve, work_of_adhesion=work) if work else normal.solve
         deepest = max(float(self.depth.max()) - found["contact_point"], 0.0)
         contact = solve(self.profile, material, indentation_depth=deepest)
-        condition = float(np.linalg.norm(inverse, 2))
+        condition = float(np.linalg.norm(inverse, 2)) if self.fit else 1.0
         sigma = noise or scatter
+        errors = sigma * deviations / scale
+        is_noisy = scatter > ROUNDING * float(np.abs(self.force).max())
+        code, misfit = self._misfit(slopes, residual, noise)
         return Fit(
             self.fit,
             contact,
@@ -426,36 +566,92 @@ class _Model:
             found["contact_point"],
             found["force_offset"],
             work,
-            sigma * deviations / scale,
+            errors,
             (inverse @ inverse.T) / np.multiply.outer(deviations, deviations),
             residual,
             sigma,
-            self._misfit(slopes / scale, residual, noise),
+            misfit,
             condition * contact.error_estimate,
+            (
+                *self._doubts(code, misfit),
+                *self._open(found, scatter * deviations / scale, scatter if is_noisy else 0.0),
+                *self._decided_by_one(inverse / deviations[:, None], q),
+            ),
         )
 
-    def _misfit(self, slopes: Array, residual: Array, noise: float | None) -> float:
-        """Probability of residuals like these by chance.
+    def _doubts(self, code: str, misfit: float) -> tuple[Notice, ...]:
+        """Return the warning about the residuals, if there is one."""
+        if misfit >= FALSE_ALARM:
+            return ()
+        left = " and ".join(name for name in PARAMETERS[2:] if name not in self.fit)
+        remedy = f"; fit {left} too, if the curve has them" if left and code == "misfit" else ""
+        message = (
+            f"the residuals are not noise (probability {misfit:.1g}): {_REMEDIES[code]}, and the "
+            f"standard errors do not hold{remedy}"
+        )
+        return (Notice(code, message, misfit, FALSE_ALARM),)
 
-        Polynomials of the order of the depths are fitted beside the parameters: their part in the
-        sum of squares has the F-distribution, or, of known noise, the whole that of chi^2.
+    def _open(self, found: _Parameters, errors: Array, scatter: float) -> tuple[Notice, ...]:
+        """Return the warning that the interval of the contact point is not that of its error.
+
+        At its ends the least squares for a given contact point exceed the minimum by the quantile
+        of the F-distribution. Raises InputError if it has no end.
         """
-        if np.abs(residual).max() <= _ROUNDING * np.abs(self.force).max():
-            return 1.0
-        count, fitted = slopes.shape
-        squares = float(np.sum(np.square(residual)))
-        by_size = 1.0
+        point, free = found["contact_point"], self.depth.size - len(self.fit)
+        if "contact_point" not in self.fit or "work_of_adhesion" in self.fit or not scatter:
+            return ()
+        quantile = float(stdtrit(free, 0.975))
+        half = quantile * float(errors[self.fit.index("contact_point")])
+        least = free * scatter**2 * (1 + quantile**2 / free)
+
+        def within(place: float) -> bool:
+            reduced, *_ = _forces(self.profile, self.depth - place, 0.0, self.touches)
+            return self.linear(reduced)[0] <= least
+
+        if within(self.farthest):
+            detail = (
+                "does not determine contact_point: start the curve nearer to it, fit fewer "
+                "parameters, or give a longer profile"
+            )
+            raise InputError(("indentation_depth",), detail)
+        ends = [point + sign * half * _LOPSIDED for sign in (-1, 1)]
+        nearer = [point + sign * half / _LOPSIDED for sign in (-1, 1)]
+        if all(map(within, nearer)) and not any(within(max(end, self.farthest)) for end in ends):
+            return ()
+        message = (
+            "the curve hardly determines contact_point: its interval is lopsided, and those of the "
+            "other parameters too; start nearer to the contact point, or fit fewer parameters"
+        )
+        return (Notice("undetermined", message),)
+
+    def _decided_by_one(self, rows: Array, q: Array) -> tuple[Notice, ...]:
+        """Return the warning of a point without which a standard error would grow most.
+
+        Without point i the error of parameter j grows by (1 + (C J^T)_ji^2/(C_jj (1 - h_i)))^(1/2).
+        """
+        if not self.fit:
+            return ()
+        rest = np.maximum(1 - np.sum(q * q, axis=1), EPS)
+        growth = np.sqrt(1 + np.square(rows @ q.T) / rest)
+        place, point = np.unravel_index(int(growth.argmax()), growth.shape)
+        largest = float(growth[place, point])
+        if largest <= _ONE_POINT:
+            return ()
+        message = (
+            f"{self.fit[place]} rests on one point, at the depth {self.depth[point]:.6g}: without "
+            f"it the standard error is {largest:.2g} times as large; measure more points there"
+        )
+        return (Notice("one_point", message, largest, _ONE_POINT),)
+
+    def _misfit(self, slopes: Array, residual: Array, noise: float | None) -> tuple[str, float]:
+        """Return the likeliest fault of the residuals, and the probability of such by chance.
+
+        With a known noise the sum of squares is compared with the distribution of chi^2 as well.
+        """
+        scale = np.linalg.norm(slopes, axis=0)
+        found = residuals.misfit(self.depth, slopes / scale, residual, self.force)
         if noise is not None:
-            by_size = 2 * float(chdtrc(count - fitted, squares / noise**2))
-        # In the order of the depth, so that uneven spacing changes nothing.
-        rank = np.empty(count)
-        rank[np.argsort(self.depth, kind="stable")] = np.linspace(-1, 1, count)
-        degrees = min(_DEGREES, (count - fitted) // 3)
-        if not degrees:
-            return by_size
-        basis, _ = np.linalg.qr(np.hstack([slopes, legendre.legvander(rank, degrees)[:, 1:]]))
-        left = residual - basis @ (basis.T @ residual)
-        free = count - basis.shape[1]
-        rest = float(np.sum(np.square(left)))
-        ratio = (squares - rest) / degrees / max(rest / free, TINY)
-        return min(float(fdtrc(degrees, free, ratio)), by_size)
+            squares, free = float(np.sum(np.square(residual))), residual.size - len(self.fit)
+            by_size = 2 * float(chdtrc(free, squares / noise**2))
+            found["misfit"] = min(found.get("misfit", 1.0), by_size)
+        return residuals.worst(found)

@@ -199,13 +199,13 @@ def header(scope: Scope, name: bytes, default: str = "") -> str:
     return b", ".join(lines).decode("latin-1") if lines else default
 
 
-async def read_body(request: Request) -> bytes:
-    """Return the body; reject it early if it is too large or not JSON.
+async def read_body(request: Request, *, any_type: bool = False) -> bytes:
+    """Return the body; reject it early if it is too large, or not JSON unless it may be a file.
 
     The server's protocol bounds the time in which it arrives.
     """
     media_type = header(request.scope, b"content-type").partition(";")[0].strip().lower()
-    if media_type != JSON:
+    if media_type != JSON and not any_type:
         detail = f"the Content-Type must be {JSON}"
         raise ServiceError(problems.UNSUPPORTED_MEDIA_TYPE, detail)
     announced = header(request.scope, b"content-length")

@@ -176,7 +176,7 @@ def test_units_of_a_pasted_table_are_those_of_its_heading(visit: Visit) -> None:
     visit.page.locator("#warnings").get_by_text("check the units of the table").wait_for()
     assert visit.page.input_value("#table").startswith("r [mm], f [nm]\n0, 0\n10000, 5\n")
     pasted(visit, "\n".join(f"{r:.6g} {f * 1e3:.6g}" for r, f in points))
-    assert "choose them above" in note.inner_text()
+    note.get_by_text("choose them above").wait_for()
     assert visit.number("Contact radius a").startswith("0.186")
 
 
@@ -237,7 +237,7 @@ def test_curve_from_an_instrument_is_fitted(visit: Visit, tmp_path: Path) -> Non
     assert visit.state() == "current"
     visit.page.fill("#curve", "d [nm], F [mm]\n0, 0\n1, 2\n2, 3")
     problem = visit.page.locator("#problem-curve")
-    problem.get_by_text("F in mm: its units are N, mN, µN, nN").wait_for()
+    problem.get_by_text("name the depth d and the force F in a line above").wait_for()
     assert visit.state() == "unreadable"
     # The curve belongs to this tab alone.
     with visit.changing():

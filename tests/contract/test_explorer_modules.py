@@ -16,7 +16,6 @@ from tests.contract.javascript import EXPLORER, evaluated
 from tests.contract.page_quantities import quantities
 
 TABLES = Path(__file__).parents[1] / "data" / "tables"
-EXPECTED = json.loads((TABLES / "expected.json").read_text("utf-8"))
 
 
 def test_forged_addresses_yield_offered_words_and_finite_numbers() -> None:
@@ -44,28 +43,6 @@ def test_forged_addresses_yield_offered_words_and_finite_numbers() -> None:
             known = value in OFFERED if isinstance(value, str) else math.isfinite(value)
             assert known, (address, value)
     assert any(result["unread"] for result in results)
-
-
-def read(files: list[str]) -> dict[str, Any]:
-    """Return the table of each file as the explorer reads it, or the error."""
-    expression = "module.readTable(module.decoded(Uint8Array.from(call)))"
-    calls = [[*(TABLES / file).read_bytes()] for file in files]
-    return dict(zip(files, evaluated("table_reader.js", expression, calls), strict=True))
-
-
-def test_tables_of_instruments_are_read() -> None:
-    units = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "nm": 1e-9}
-    for file, table in read(list(EXPECTED["read"])).items():
-        expected = EXPECTED["points"] | EXPECTED["read"][file]
-        assert table.get("units") == expected["units"], (file, table)
-        for name, unit in zip("rf", table["units"], strict=True):
-            metres = [float(f"{value * units[unit or 'm']:.15g}") for value in table[name]]
-            assert metres == expected[name], file
-
-
-def test_tables_that_cannot_be_read_are_refused_with_the_line() -> None:
-    refused = EXPECTED["refused"]
-    assert {file: table.get("error") for file, table in read(list(refused)).items()} == refused
 
 
 def test_labels_are_those_of_the_openapi_document(client: Client) -> None:

@@ -26,13 +26,47 @@ def test_response_equals_the_core(client: Client) -> None:
     FitAnswer.model_validate(document)
     curve = {name: EXAMPLE[name] for name in ("indentation_depth", "normal_force", "fit")}
     found = fit.solve(Paraboloid(5000.0), **curve)
-    for name in found.quantities[1:]:
+    known = [name for name in found.quantities[1:] if getattr(found, name) is not None]
+    for name in known:
         assert document[name] == np.atleast_1d(getattr(found, name)).tolist(), name
     assert document["fit"] == EXAMPLE["fit"]
     # The curve is that of 20 kPa, with contact at 37 nm and an offset of 0.3 nN.
     off = np.array([document[name][0] for name in EXAMPLE["fit"]]) - [2e-5, 37.0, 0.3]
     assert np.abs(off / document["standard_errors"]).max() < 2.5
     assert [warning["code"] for warning in document["warnings"]] == ["half_space"]
+
+
+def test_young_s_modulus_of_the_sample(client: Client) -> None:
+    # 1/E* = (1 - 0.5²)/E + (1 - 0.25²)/1e-4.
+    silica = {"youngs_modulus": 1e-4, "poissons_ratio": 0.25}
+    document = client.post(PATH, query(poissons_ratio=0.5, indenter=silica)).json()
+    e_star, error = document["e_star"][0], document["standard_errors"][0]
+    modulus = 0.75 / (1 / e_star - 0.9375 / 1e-4)
+    assert document["youngs_modulus"] == pytest.approx([modulus], rel=1e-12, abs=0)
+    step = 1e-6 * e_star
+    slope = (0.75 / (1 / (e_star + step) - 0.9375 / 1e-4) - modulus) / step
+    expected = pytest.approx([slope * error], rel=1e-4, abs=0)
+    assert document["youngs_modulus_error"] == expected
+    soft = silica | {"youngs_modulus": 1e-6}
+    refused = client.post(PATH, query(poissons_ratio=0.5, indenter=soft))
+    assert refused.status_code == 422
+    assert refused.json()["errors"][0]["pointer"] == "/indenter"
+
+
+def test_segment_of_a_curve_with_two_branches(client: Client) -> None:
+    d = [i / 20 for i in range(21)]
+    curve = {
+        "profile": {"kind": "paraboloid", "radius": 1.0},
+        "indentation_depth": d + d[::-1],
+        "normal_force": [x**1.5 for x in d] + [max((x - 0.3) / 0.7, 0) ** 1.5 for x in d[::-1]],
+    }
+    codes = [each["code"] for each in client.post(PATH, curve).json()["warnings"]]
+    assert "two_branches" in codes
+    for segment, point, modulus in (("loading", 0.0, 0.75), ("unloading", 0.3, 0.75 / 0.7**1.5)):
+        document = client.post(PATH, curve | {"segment": segment}).json()
+        assert document["e_star"] == pytest.approx([modulus], rel=1e-9, abs=0)
+        assert document["contact_point"] == pytest.approx([point], rel=1e-9, abs=1e-9)
+        assert "two_branches" not in [each["code"] for each in document["warnings"]]
 
 
 def test_thickness_of_the_body(client: Client) -> None:

@@ -70,6 +70,7 @@ def failures(*types: ProblemType) -> Responses:
 
 POST_FAILURES: Final = failures(problems.HEADERS_TOO_LARGE, *_BODY, *_COMPUTATION)
 GET_FAILURES: Final = failures(problems.HEADERS_TOO_LARGE, *_COMPUTATION)
+FILE_FAILURES: Final = failures(problems.HEADERS_TOO_LARGE, *_BODY[1:3], *_COMPUTATION[1:])
 RESULT: Final[Responses] = {
     200: {
         "description": "Result of the query",

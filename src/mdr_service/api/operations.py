@@ -1,17 +1,19 @@
 """Operation of the service, its documentation and the catalogue of profiles."""
 
 from importlib.resources import files
-from typing import Final
+from typing import Annotated, Final
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter, Query, Request
 from prometheus_client import generate_latest
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from mdr_core import COMPILED, __version__, profiles
-from mdr_service import health, observability, problems
-from mdr_service.api.documentation import PAGE_HEADERS, failures
-from mdr_service.schemas.answers import Catalogue, Health, ProfileField, ProfileKind
+from mdr_service import health, observability, problems, tables
+from mdr_service.api.documentation import FILE_FAILURES, PAGE_HEADERS, failures
+from mdr_service.middleware import read_body
+from mdr_service.schemas.answers import Catalogue, Health, ProfileField, ProfileKind, TableAnswer
 from mdr_service.schemas.profiles import MODELS
+from mdr_service.serializers import JSON
 from mdr_service.settings import SETTINGS, Settings
 
 router = APIRouter(responses=failures(problems.HEADERS_TOO_LARGE))
@@ -19,6 +21,9 @@ router = APIRouter(responses=failures(problems.HEADERS_TOO_LARGE))
 _DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("utf-8")
 # The text format of Prometheus.
 _METRICS: Final = "text/plain; version=0.0.4; charset=utf-8"
+_AS: Final = "`profile` (radius and height) or `curve` (depth and force)"
+_EXAMPLE: Final = {"schema": {"type": "string"}, "example": "r [mm];f [µm]\n0;0\n0,1;0,5"}
+_FILE: Final = {"requestBody": {"required": True, "content": {"text/csv": _EXAMPLE}}}
 _OK: Final = Health(status="ok", version=__version__, compiled=COMPILED)
 _CATALOGUE: Final = Catalogue(
     profiles=[
@@ -46,6 +51,29 @@ _CATALOGUE: Final = Catalogue(
 async def list_profiles() -> Catalogue:
     """List the kinds of profile with their formulas, fields and closed forms."""
     return _CATALOGUE
+
+
+@router.post(
+    "/v1/table",
+    operation_id="table",
+    tags=["contact"],
+    summary="Columns of a profile or a curve in a file of an instrument",
+    response_model=TableAnswer,
+    responses=FILE_FAILURES,
+    openapi_extra=_FILE,
+)
+async def read_table(
+    request: Request, kind: Annotated[str, Query(alias="as", description=_AS)] = "profile"
+) -> Response:
+    """Read a text file with headings, units, decimal commas and further columns.
+
+    Nothing is guessed: what is not understood is rejected, with its line and the remedy.
+    """
+    if kind not in tables.KINDS:
+        raise problems.invalid([("/as", f"must be one of {', '.join(tables.KINDS)}")])
+    content = await read_body(request, any_type=True)
+    answer = await request.app.state.compute.run_in_process(tables.read, content, kind)
+    return Response(answer, media_type=JSON)
 
 
 @router.get("/v1/limits", operation_id="limits", tags=["operation"], summary="Limits of a request")

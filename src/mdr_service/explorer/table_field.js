@@ -1,11 +1,9 @@
 // The field for the two columns of a profile or a curve: its text, its units, and files.
 
 import { mark } from "./form.js";
-import { decoded, readTable } from "./table_reader.js";
+import { readTable } from "./table_reader.js";
 import { numberOf } from "./units.js";
 
-// The most points that the service takes by default.
-const MOST = 2000;
 // Points of a tip from the coefficients of its area function.
 const POINTS_OF_AREA = 200;
 
@@ -45,8 +43,8 @@ export function tableField(root, kind, { change, fail }) {
   const part = (selector) => root.querySelector(selector);
   const text = part("textarea");
   const selects = [...root.querySelectorAll("select")];
-  // The table whose text the field holds.
-  let shown = null;
+  // The table whose text the field holds, and the number of the newest text, which is being read.
+  let [shown, newest, pending] = [null, 0, false];
 
   const textOf = ({ r, f, units }) =>
     [kind.heads.map((head, i) => `${head} [${units[i]}]`).join(", "), ...r.map((x, i) => `${x}, ${f[i]}`)].join("\n");
@@ -67,10 +65,17 @@ export function tableField(root, kind, { change, fail }) {
     text.value = textOf(table);
     give({ ...table, named: undefined, lines: undefined });
   };
-  const read = () => {
+  const read = async (content = text.value) => {
     part(".thin").hidden = true;
+    const own = ++newest;
+    pending = true;
+    const result = await readTable(content, kind).catch((error) => error);
+    // A newer text is being read.
+    if (own !== newest) return;
+    pending = false;
     try {
-      const { units: named, ...table } = readTable(text.value, kind);
+      if (result instanceof Error) throw result;
+      const { units: named, ...table } = result;
       const units = selects.map(({ value }, i) => named[i] ?? value);
       selects.forEach((select, i) => (select.value = units[i]));
       offerThinning({ ...table, units });
@@ -84,7 +89,7 @@ export function tableField(root, kind, { change, fail }) {
   };
   /** Offer to use every n-th point, and throw an error, if there are too many points. */
   const offerThinning = ({ r, f, units }) => {
-    const every = Math.ceil(r.length / MOST);
+    const every = Math.ceil(r.length / kind.most);
     if (every < 2) return;
     const thinned = (column) => column.filter((_, i) => i % every === 0);
     part(".thin").hidden = false;
@@ -93,7 +98,7 @@ export function tableField(root, kind, { change, fail }) {
       part(".thin").hidden = true;
       rewrite({ r: thinned(r), f: thinned(f), units });
     };
-    throw new Error(`${r.length} points, of which the service takes ${MOST}`);
+    throw new Error(`${r.length} points, of which the service takes ${kind.most}`);
   };
   selects.forEach((select, i) => {
     for (const name of Object.keys(kind.units[i])) select.add(new Option(name));
@@ -103,7 +108,7 @@ export function tableField(root, kind, { change, fail }) {
       else read();
     });
   });
-  text.addEventListener("input", read);
+  text.addEventListener("input", () => read());
   part(".reverse").addEventListener("click", () =>
     shown && rewrite({ ...shown, [kind.reversed]: shown[kind.reversed].map((x) => 0 - x) }));
   part(".centre")?.addEventListener("click", () => {
@@ -113,9 +118,11 @@ export function tableField(root, kind, { change, fail }) {
     else rewrite({ ...shown, r: shown.r.map((x) => Number((x - axis).toPrecision(12))) });
   });
   part("[type=file]").addEventListener("change", async ({ target }) => {
-    text.value = decoded(await target.files[0].arrayBuffer());
+    const [file] = target.files;
+    text.value = await file.text();
+    // Its bytes, because the service knows other encodings.
+    read(await file.arrayBuffer());
     target.value = "";
-    read();
   });
   part(".use-area")?.addEventListener("click", () => {
     const coefficients = part("#coefficients").value.trim().split(/[\s;]+/).map(numberOf);
@@ -131,7 +138,7 @@ export function tableField(root, kind, { change, fail }) {
   return {
     /** Show a table, unless the field holds it or a text that cannot be read. */
     show(table, unreadable) {
-      if (unreadable || table === shown) return;
+      if (unreadable || pending || table === shown) return;
       shown = table;
       text.value = textOf(table);
       selects.forEach((select, i) => (select.value = table.units[i]));

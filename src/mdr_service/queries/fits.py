@@ -6,14 +6,19 @@ from mdr_core import fit
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
 from mdr_service.queries.contacts import ADHESION, Result, checked, profile
+from mdr_service.schemas.contacts import as_body
 from mdr_service.schemas.fits import FitQuery
 
 
 def solve_fit(query: FitQuery) -> Fit:
     """Fit F = E* F̂(d − d₀) + F₀ to a measured curve by least squares.
 
-    The standard errors hold for independent errors of the forces of equal size. A warning `misfit`
-    tells that the residuals are not such noise: then the shape or the model is wrong.
+    The standard errors hold for independent errors of the forces of equal size. A warning tells
+    that the residuals are not such noise: `two_branches` (give a `segment`), `noise_grows`,
+    `correlated_noise`, or `misfit` where the shape or the model is wrong. Others tell that one
+    point decides (`one_point`), that the interval of the contact point is lopsided
+    (`undetermined`), or that no adhesion is seen (`bound`). With `poissons_ratio` the response has
+    Young's modulus of the sample.
     `error_estimate` is the numerical error of the parameters.
     """
     if ("e_star" in query.fit) == query.has("material"):
@@ -31,13 +36,16 @@ def solve_fit(query: FitQuery) -> Fit:
         e_star=known.effective.e_star if known else None,
         noise=query.noise,
         body_thickness=query.body_thickness or (known.body_thickness if known else None),
+        segment=query.segment,
+        poissons_ratio=query.poissons_ratio,
+        indenter=as_body(query.indenter),
     )
 
 
 def fit_result(query: FitQuery, source: Fit) -> Result:
     """Return the parameters, their standard errors, and the residuals of a curve."""
-    names = source.quantities[1:]
-    values = {name: np.atleast_1d(getattr(source, name)) for name in names}
+    found = {name: getattr(source, name) for name in source.quantities[1:]}
+    values = {name: np.atleast_1d(value) for name, value in found.items() if value is not None}
     return {
         "fit": query.fit,
         **checked(query, values),

@@ -124,8 +124,12 @@ class FitAnswer(SolvedAnswer):
     correlation: list[list[float]] = _number("Correlation of the fitted parameters")
     noise: list[float] = _force("Standard deviation of the forces")
     misfit: list[float] = _number(
-        "Probability that residuals of the right shape are as far from noise; below 0.01 with the "
-        "warning `misfit`"
+        "Probability that residuals of the right shape are as far from noise; below 0.01 with a "
+        "warning that names the likeliest fault"
+    )
+    youngs_modulus: list[float] = _pressure("Young's modulus of the sample", default=None)
+    youngs_modulus_error: list[float] = _pressure(
+        "Its standard deviation, by that of E*", default=None
     )
     indentation_depth: list[float] = _length(
         "Measured depths; with adhesion without those between the least force and the pull-off"
@@ -408,6 +412,39 @@ class Health(Answer):
         description="True if the loop of load histories is compiled: without, they take about 100 "
         "times longer."
     )
+
+
+class TableColumn(Answer):
+    """Column of a file."""
+
+    name: str = Field(description="Name without the unit, empty without a heading.")
+    unit: str | None = Field(description="Unit, of an area that of its root; null without one.")
+    quantity: str | None = Field(
+        description="`radius`, `area`, `height`, `depth` or `force`; null if it is not taken."
+    )
+
+
+class TableSegment(Answer):
+    """Branch of a curve."""
+
+    kind: Literal["loading", "unloading"] = Field(description="Direction of the depth.")
+    first: int = Field(description="First row, from 0.")
+    last: int = Field(description="Last row.")
+
+
+class TableAnswer(Answer):
+    """Columns of a file, and the two that are taken, in the units of the file."""
+
+    columns: list[TableColumn] = Field(description="All columns, in their order.")
+    r: list[float] = left_out("Radii of a profile.")
+    f: list[float] = left_out("Heights of a profile.")
+    indentation_depth: list[float] = left_out("Depths of a curve.")
+    normal_force: list[float] = left_out("Forces of a curve.")
+    units: list[str | None] = Field(description="Units of the two lists, null without one.")
+    scales: list[float | None] = Field(description="These units in metres or newtons.")
+    lines: list[int] = Field(description="Line of each point in the file, from 1.")
+    notes: list[str] = Field(description="Which columns are taken.")
+    segments: list[TableSegment] = left_out("Branches of a curve, by turning points of the depth.")
 
 
 class ProblemError(Answer):

@@ -121,6 +121,11 @@ BodyOrRigid = Annotated[
 ]
 
 
+def as_body(given: BodyMaterial | str) -> materials.Body | Literal["rigid"]:
+    """Return a body of the core."""
+    return materials.RIGID if isinstance(given, str) else materials.Body(**vars(given))
+
+
 def thickness() -> Any:
     """Return the optional field of the thickness of a body."""
     return positive(
@@ -167,10 +172,7 @@ class Bodies(Elastic):
     def effective(self) -> materials.Material:
         """Effective moduli."""
         return materials.from_bodies(
-            [
-                materials.RIGID if isinstance(each, str) else materials.Body(**vars(each))
-                for each in self.bodies
-            ],
+            [as_body(each) for each in self.bodies],
             body_thickness=self.body_thickness,
         )
 

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.contacts import Axes, Material, Query, thickness
+from mdr_service.schemas.contacts import Axes, BodyOrRigid, Material, Query, thickness
 from mdr_service.schemas.fields import OnceEach
 from mdr_service.schemas.quantities import Signed, left_out, positive, quantity
 from mdr_service.settings import SETTINGS
@@ -37,3 +37,17 @@ class FitQuery(Query):
         default=None,
     )
     body_thickness: float = thickness()
+    segment: Literal["loading", "unloading"] = left_out(
+        "Branch to fit, by the direction of the depth in the order of the lists; by default all "
+        "points."
+    )
+    poissons_ratio: float = quantity(
+        "1",
+        "Poisson's ratio ν of the sample, for its `youngs_modulus`",
+        default=None,
+        gt=-1,
+        le=0.5,
+    )
+    indenter: BodyOrRigid = Field(
+        default="rigid", description="The body that indents the sample, for its `youngs_modulus`."
+    )

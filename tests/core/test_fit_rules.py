@@ -1,0 +1,168 @@
+"""A fit names the branch, the noise, the point or the parameter that its curve leaves in doubt."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import mdr_core as mdr
+from mdr_core import fit, residuals
+
+Array = np.ndarray
+BALL = mdr.Paraboloid(1.0)
+TESTS = ("misfit", "two_branches", "noise_grows", "correlated_noise")
+
+
+def hertz(depth: Array) -> Array:
+    """Force on a ball of radius 1 with E* = 1."""
+    return np.asarray(4 / 3 * np.maximum(depth, 0) ** 1.5)
+
+
+def codes(depth: Array, force: Array, **given: Any) -> set[str]:
+    found = fit.solve(BALL, indentation_depth=depth, normal_force=force, **given)
+    return {notice.code for notice in found.warnings}
+
+
+def noise(random: np.random.Generator, force: Array, size: float) -> Array:
+    return size * force.max() * random.standard_normal(force.size)
+
+
+def test_two_branches_are_named() -> None:
+    random, found = np.random.default_rng(101), []
+    for _ in range(40):
+        up, left = np.linspace(0, 1, int(random.integers(30, 200))), random.uniform(0.05, 0.5)
+        depth = np.r_[up, up[::-1]]
+        force = np.r_[hertz(up), hertz((up[::-1] - left) / (1 - left))]
+        size = random.choice([0, 1e-3, 1e-2])
+        found.append("two_branches" in codes(depth, force + noise(random, force, size)))
+    assert np.mean(found) >= 0.98
+
+
+def test_retraction_of_a_soft_sample_is_named_even_if_sorted() -> None:
+    random, found = np.random.default_rng(102), []
+    for _ in range(20):
+        up, loss = np.linspace(-0.5, 1, 150), random.uniform(0.1, 0.6)
+        depth, force = np.r_[up, up[::-1]], np.r_[hertz(up), (1 - loss) * hertz(up[::-1])]
+        force[150:] += loss * hertz(up[::-1]) ** 2 / hertz(np.array(1.0))
+        force = force + noise(random, force, random.choice([0, 1e-3, 1e-2]))
+        order = np.argsort(depth, kind="stable")
+        found += [bool(codes(depth, force) & {"two_branches"})]
+        found += [bool(codes(depth[order], force[order]) & set(TESTS))]
+    assert np.mean(found) >= 0.98
+
+
+def test_noise_of_one_branch_is_no_warning() -> None:
+    random, found = np.random.default_rng(103), []
+    for trial in range(200):
+        depth = np.linspace(random.uniform(-0.5, 0), 1, int(random.choice([20, 60, 200])))
+        if trial % 3:
+            depth = depth[::-1] if trial % 3 == 1 else random.permutation(depth)
+        force = hertz(depth)
+        found.append(bool(codes(depth, force + noise(random, force, 0.01)) & set(TESTS)))
+    # 1 % of 200, and three standard deviations of the count.
+    assert sum(found) <= 6
+
+
+def test_correlated_noise_is_named() -> None:
+    random, found = np.random.default_rng(104), []
+    depth = np.linspace(-0.5, 1, 200)
+    for _ in range(20):
+        errors = random.standard_normal(200)
+        for i in range(1, 200):
+            errors[i] += 0.7 * errors[i - 1]
+        found.append(bool(codes(depth, hertz(depth) + 0.01 * errors) & set(TESTS)))
+    assert np.mean(found) >= 0.95
+
+
+@pytest.mark.parametrize("names", [("e_star", "contact_point"), fit.PARAMETERS[:3]])
+def test_upper_part_of_a_curve_is_right_or_in_doubt(names: tuple[str, ...]) -> None:
+    random, silent = np.random.default_rng(105), 0
+    for _ in range(100):
+        depth = np.linspace(random.uniform(0.5, 0.95), 1, int(random.integers(30, 200)))
+        force = hertz(depth)
+        noisy = force + noise(random, force, 10 ** random.uniform(-3, -0.8))
+        try:
+            found = fit.solve(BALL, indentation_depth=depth, normal_force=noisy, fit=names)
+        except mdr.InputError:
+            continue
+        off = np.array([found.e_star - 1, found.contact_point]) / found.standard_errors[:2]
+        named = {notice.code for notice in found.warnings} & {"undetermined", *TESTS}
+        silent += bool(np.abs(off).max() > 4) and not named
+    assert silent == 0
+
+
+def test_exact_upper_part_is_fitted() -> None:
+    depth = np.linspace(0.9, 1, 21)
+    found = fit.solve(BALL, indentation_depth=depth, normal_force=hertz(depth))
+    assert found.e_star == pytest.approx(1, rel=1e-9, abs=0)
+    assert found.contact_point == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize("shift", [0.0, 10.0])
+def test_offset_and_contact_point_of_a_flat_punch_cannot_be_told_apart(shift: float) -> None:
+    depth = np.arange(1.0, 6.0)
+    with pytest.raises(mdr.InputError, match=r"contact_point and force_offset.*told apart"):
+        fit.solve(
+            mdr.FlatPunch(1.0),
+            indentation_depth=depth + shift,
+            normal_force=2 * depth,
+            fit=fit.PARAMETERS[:3],
+        )
+
+
+def test_two_depths_do_not_determine_three_parameters() -> None:
+    depth, force = np.repeat([0.5, 1.0], 5), np.repeat([0.4, 1.3], 5)
+    force = force + 0.01 * np.random.default_rng(106).standard_normal(10)
+    with pytest.raises(mdr.InputError, match="does not determine"):
+        fit.solve(BALL, indentation_depth=depth, normal_force=force, fit=fit.PARAMETERS[:3])
+
+
+def test_no_adhesion_is_held_at_zero_and_said() -> None:
+    random, covered, held = np.random.default_rng(107), [], 0
+    names, depth = ("e_star", "work_of_adhesion"), np.linspace(0, 1, 40)
+    for _ in range(40):
+        force = hertz(depth)
+        force = force + noise(random, force, 0.01)
+        found = fit.solve(BALL, indentation_depth=depth, normal_force=force, fit=names)
+        assert found.standard_errors.min() > 0
+        held += "bound" in {notice.code for notice in found.warnings}
+        off = np.array([found.e_star - 1, found.work_of_adhesion]) / found.standard_errors
+        covered.append(np.abs(off) < 2.02)
+    # Noise favours a negative w in half of the curves.
+    assert 8 <= held <= 36
+    assert np.mean(covered, axis=0).min() >= 0.85
+
+
+def test_adhesion_alone_is_held_at_zero() -> None:
+    depth = np.linspace(0, 1, 40)
+    force = hertz(depth) + noise(np.random.default_rng(110), hertz(depth), 0.01)
+    found = fit.solve(
+        BALL, indentation_depth=depth, normal_force=force + 0.01, fit=["work_of_adhesion"], e_star=1
+    )
+    assert {"bound"} <= {notice.code for notice in found.warnings}
+    assert found.standard_errors.min() > 0
+
+
+def test_point_that_decides_alone_is_named() -> None:
+    # The contact, and a single point far before it, on which the offset rests.
+    depth = np.append(-1.0, np.linspace(0.9, 1, 20))
+    force = hertz(depth) + noise(np.random.default_rng(108), hertz(depth), 1e-3)
+    found = fit.solve(
+        BALL, indentation_depth=depth, normal_force=force, fit=("e_star", "force_offset")
+    )
+    (notice,) = (each for each in found.warnings if each.code == "one_point")
+    assert "depth -1:" in notice.message
+    # Without the point the offset has the error of the others alone.
+    others = fit.solve(
+        BALL, indentation_depth=depth[1:], normal_force=force[1:], fit=("e_star", "force_offset")
+    )
+    growth = others.standard_errors[1] / others.noise / (found.standard_errors[1] / found.noise)
+    assert notice.value == pytest.approx(growth, rel=1e-6, abs=0)
+
+
+def test_directions_ignore_reversals_of_the_noise() -> None:
+    up = np.linspace(0, 1, 50)
+    depth = np.r_[up, up[::-1]] + 0.005 * np.random.default_rng(109).standard_normal(100)
+    signs = residuals.directions(depth)
+    assert np.sum(np.diff(signs) != 0) == 1
+    assert abs(int(np.argmax(np.diff(signs) != 0)) - 49) <= 3

@@ -1,0 +1,62 @@
+"""A file over HTTP has the columns and lists of the core, and is else refused with its line."""
+
+import pytest
+
+from mdr_service.schemas.answers import TableAnswer
+from tests.conftest import Client
+
+CSV = {"content-type": "text/csv"}
+
+
+def read(client: Client, content: str | bytes, kind: str = "curve") -> tuple[int, dict]:
+    body = content.encode() if isinstance(content, str) else content
+    response = client.request("POST", f"/v1/table?as={kind}", content=body, headers=CSV)
+    return response.status_code, response.json()
+
+
+def test_curve_has_columns_units_and_segments(client: Client) -> None:
+    text = "time_s,load_micro_N,depth_nm\n0,0,0\n1,2,10\n2,5,20\n3,1,10\n4,0,0\n"
+    status, document = read(client, text)
+    assert status == 200
+    TableAnswer.model_validate(document)
+    assert document["indentation_depth"] == [0, 10, 20, 10, 0]
+    assert document["normal_force"] == [0, 2, 5, 1, 0]
+    assert document["units"] == ["nm", "µN"]
+    assert document["scales"] == pytest.approx([1e-9, 1e-6], rel=1e-15, abs=0)
+    assert [each["quantity"] for each in document["columns"]] == [None, "force", "depth"]
+    assert document["lines"] == [2, 3, 4, 5, 6]
+    assert document["segments"] == [
+        {"kind": "loading", "first": 0, "last": 2},
+        {"kind": "unloading", "first": 3, "last": 4},
+    ]
+
+
+def test_profile_without_a_heading_names_no_unit(client: Client) -> None:
+    status, document = read(client, "0 0\n1 0,5\n2 2\n", "profile")
+    assert status == 200
+    TableAnswer.model_validate(document)
+    assert (document["r"], document["f"]) == ([0, 1, 2], [0, 0.5, 2])
+    assert document["units"] == document["scales"] == [None, None]
+
+
+@pytest.mark.parametrize(
+    ("content", "kind", "pointer", "detail"),
+    [
+        ("Alpha,Beta\n0.1,5\n", "curve", "/table", "Line 2: 2 columns; name the depth d"),
+        (b"PK\x03\x04", "curve", "/table", "is a workbook"),
+        ("", "curve", "/table", "no line holds two numbers"),
+        (b"\xff\xfe\x00", "curve", "/table", "no line holds two numbers"),
+        ("0,0\n1,1", "other", "/as", "must be one of profile, curve"),
+    ],
+)
+def test_refusals_point_and_name_the_remedy(
+    client: Client, content: str | bytes, kind: str, pointer: str, detail: str
+) -> None:
+    status, document = read(client, content, kind)
+    assert status == 422
+    assert document["errors"][0]["pointer"] == pointer
+    assert detail in document["errors"][0]["detail"]
+
+
+def test_file_that_is_too_long_is_refused(client: Client) -> None:
+    assert read(client, b"0 0\n" * 1_100_000)[0] == 413
