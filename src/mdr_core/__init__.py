@@ -49,6 +49,7 @@ from mdr_core.profiles import (
     Tabulated,
     TruncatedCone,
     TruncatedParaboloid,
+    TwoSpheres,
 )
 from mdr_core.table_reader import read_table
 
@@ -81,6 +82,7 @@ __all__ = [
     "Tabulated",
     "TruncatedCone",
     "TruncatedParaboloid",
+    "TwoSpheres",
     "__version__",
     "adhesion",
     "fields",

@@ -277,7 +277,7 @@ def _largest_coordinates(profile: Profile, energy: Array) -> Array:
     """Contact coordinates at which E/E* of the contact is the kinetic energy [length^3]."""
     if profile.domain < np.inf:
         beyond = energy > profile.reduced_energy(number(profile.domain))
-        require_inside(("normal_velocity",), beyond, profile.domain, "velocity or the mass")
+        require_inside(("normal_velocity",), beyond, profile, "velocity or the mass")
 
     def stored(s: Array) -> tuple[Array, Array]:
         value = profile.reduced_energy(s)

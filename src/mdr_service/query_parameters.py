@@ -196,6 +196,9 @@ def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str
             for body in (1, 2):
                 text = f"`{name}` of body {body}, absent for a rigid body {dimension}"
                 yield f"{name}_{body}", field.replace("#", str(body - 1)), type_, text
+        elif field == "profile.radii.#":
+            for body in (1, 2):
+                yield f"radius_{body}", field.replace("#", str(body - 1)), type_, text
         elif field == "profile.kind":
             yield name, field, Literal[OF_NUMBERS], text
         elif field == "quantities":

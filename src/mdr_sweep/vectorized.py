@@ -64,8 +64,8 @@ def solve(spec: Spec, batch: pa.RecordBatch) -> pa.RecordBatch:
 
 def _is_array(name: str, column: Column) -> bool:
     """Return True if a field can be an array over the cases of one call."""
-    is_term = name.startswith("profile.terms.")
-    return column.field.type == "number" and name.startswith(_ARRAYS) and not is_term
+    in_list = name.startswith(("profile.terms.", "profile.radii."))
+    return column.field.type == "number" and name.startswith(_ARRAYS) and not in_list
 
 
 def _groups(columns: Columns, size: int) -> Iterator[Rows]:

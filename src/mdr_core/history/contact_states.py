@@ -133,7 +133,7 @@ def advance_many(
         row[:] = values
     profile, largest = contact.profile, contact.profile.largest_loads
     if largest is not None:
-        require_inside(("indentation_depth",), path[2] > largest[0], profile.domain)
+        require_inside(("indentation_depth",), path[2] > largest[0], profile)
     path[3] /= contact.displacement_ratio
     moved = slip_memory.moved_each(last.vertices, last.ends, path)
     return ContactStates(contact, Polylines(*moved, path[2:]), last)

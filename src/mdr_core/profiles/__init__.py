@@ -1,4 +1,4 @@
-"""Fifteen kinds of profile, each with its closed forms."""
+"""Sixteen kinds of profile, each with its closed forms."""
 
 from typing import Final
 
@@ -13,12 +13,14 @@ from mdr_core.profiles.spheroids import Ellipsoid, Sphere
 from mdr_core.profiles.tabulated import Tabulated
 from mdr_core.profiles.tipped import RoundedCone
 from mdr_core.profiles.truncated import RoundedPunch, TruncatedCone, TruncatedParaboloid
+from mdr_core.profiles.two_spheres import TwoSpheres
 
 _CLASSES: Final[tuple[type[Profile], ...]] = (
     FlatPunch,
     Cone,
     Paraboloid,
     Sphere,
+    TwoSpheres,
     Ellipsoid,
     Power,
     Series,
@@ -52,4 +54,5 @@ __all__ = [
     "Tabulated",
     "TruncatedCone",
     "TruncatedParaboloid",
+    "TwoSpheres",
 ]

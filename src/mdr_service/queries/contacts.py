@@ -60,9 +60,11 @@ def solve_tangential(query: TangentialQuery | LoadedQuery) -> TangentialContact:
 
 def profile(model: Profile) -> profiles.Profile:
     """Return the profile; fields have the same names in the model and in the core."""
-    given: Arguments = {name: value for name, value in vars(model).items() if name != "kind"}
-    if model.kind == "tabulated":
-        given = {name: tuple(v) if isinstance(v, list) else v for name, v in given.items()}
+    given: Arguments = {
+        name: tuple(value) if isinstance(value, list) else value
+        for name, value in vars(model).items()
+        if name != "kind"
+    }
     if model.kind == "series":
         given["terms"] = tuple(profiles.PowerTerm(**vars(term)) for term in model.terms)
     return _by_parameters(model.kind, **given)

@@ -28,11 +28,7 @@ class ConeProfile(Strict):
 
 
 class ParaboloidProfile(Strict):
-    """A paraboloid, the shape of Hertz: r²/(2·radius).
-
-    Two spheres, or a sphere in a socket, are one with 1/radius = 1/R₁ + 1/R₂, where R < 0 for a
-    concave surface.
-    """
+    """A paraboloid, the shape of Hertz: r²/(2·radius)."""
 
     kind: Literal["paraboloid"]
     radius: float = positive("length", "Radius of curvature at the tip")
@@ -43,6 +39,18 @@ class SphereProfile(Strict):
 
     kind: Literal["sphere"]
     radius: float = positive("length", "Radius of the sphere")
+
+
+class TwoSpheresProfile(Strict):
+    """The exact gap of two spheres, or of a ball in a socket, whose radius is negative."""
+
+    kind: Literal["two_spheres"]
+    radii: list[Signed] = quantity(
+        "length",
+        "Radii R₁ of the first body and R₂ of the second one, of a socket negative; 1/R₁ + 1/R₂ > 0",
+        min_length=2,
+        max_length=2,
+    )
 
 
 class EllipsoidProfile(Strict):
@@ -176,6 +184,7 @@ Profile = Annotated[
     | ConeProfile
     | ParaboloidProfile
     | SphereProfile
+    | TwoSpheresProfile
     | EllipsoidProfile
     | PowerProfile
     | SeriesProfile
@@ -198,6 +207,9 @@ MODELS: Final[Mapping[str, type[Strict]]] = {
 OF_NUMBERS: Final = tuple(
     kind
     for kind, model in MODELS.items()
-    if {field.annotation for name, field in model.model_fields.items() if name != "kind"} == {float}
+    if all(
+        field.annotation is float or name in {"kind", "radii"}
+        for name, field in model.model_fields.items()
+    )
 )
 """Kinds that consist of numbers."""
