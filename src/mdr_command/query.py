@@ -35,7 +35,7 @@ _STATUS: Final = {
 }
 _STANDARD_INPUT: Final = "-"
 # Options that are not numbers.
-_TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities"})
+_TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities", "held_1", "held_2"})
 # Options beside the parameters of the request.
 _OTHER_OPTIONS: Final = frozenset(
     {"output", "size", "units", "table", "area_coefficients", "largest_height", "length_unit"}

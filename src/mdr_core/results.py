@@ -32,7 +32,8 @@ class Results:
         load; `method`, `error_estimate`, and `warnings` as a list of dictionaries with the members
         of `Notice`.
         """
-        values = self.values() | {name: _plain(getattr(self, name)) for name in self.about}
+        about = {name: _plain(getattr(self, name)) for name in self.about}
+        values = self.values() | {name: value for name, value in about.items() if value is not None}
         if "warnings" in values:
             values["warnings"] = [vars(notice) for notice in values["warnings"]]
         return values

@@ -15,6 +15,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, create_model
 from pydantic_core import PydanticCustomError
 
+from mdr_core import materials
 from mdr_core.errors import InputError
 from mdr_core.validation import FINITE
 from mdr_service import problems
@@ -195,6 +196,7 @@ def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str
         if group == "material.bodies.#":
             for body in (1, 2):
                 text = f"`{name}` of body {body}, absent for a rigid body {dimension}"
+                type_ = materials.Held | None if name == "held" else type_
                 yield f"{name}_{body}", field.replace("#", str(body - 1)), type_, text
         elif field == "profile.radii.#":
             for body in (1, 2):

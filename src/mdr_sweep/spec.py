@@ -9,6 +9,7 @@ from typing import Any, Final
 from mdr_core import __version__
 from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.tangential import TangentialContact
+from mdr_core.validity import MODEL_ERRORS
 from mdr_core.wear.limit import LimitingWear
 
 _NORMAL: Final = tuple(name for name in NORMAL_QUANTITIES if name != "maximum_pressure")
@@ -21,12 +22,13 @@ QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
 }
 """Quantities that a sweep computes unless some are named, by query."""
 ONLY_IF_NAMED: Final[Mapping[str, tuple[str, ...]]] = {
-    "normal": ("maximum_pressure", "model_error", "data_error", *PULL_OFF),
-    "tangential": ("maximum_pressure", "maximum_shear_stress", "model_error", "data_error"),
+    "normal": ("maximum_pressure", *MODEL_ERRORS, "data_error", *PULL_OFF),
+    "tangential": ("maximum_pressure", "maximum_shear_stress", *MODEL_ERRORS, "data_error"),
     "wear": ("model_error",),
 }
 """Quantities that are computed if they are named. Maxima of fields take a search and can be
-infinite; `data_error` is NaN without a table, and the pull-off NaN without adhesion."""
+infinite; `data_error` is NaN without a table, the pull-off NaN without adhesion, and the error of
+radius and pressure NaN but for round bodies."""
 WARNING, ERROR = "warning", "error"
 TEXTS: Final = frozenset({"regime", WARNING, ERROR})
 """Columns of the result that are not numbers."""

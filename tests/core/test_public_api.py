@@ -83,6 +83,7 @@ def test_impact_conserves_energy_and_rebounds_as_measured() -> None:
 @pytest.mark.parametrize("kind", mdr.KINDS)
 def test_completion_of_a_profile_offers_what_a_user_needs(kind: str) -> None:
     names = {"radius": 1.0, "tip_radius": 2.0, "terms": (mdr.PowerTerm(1.0, 2.0),)}
+    names |= {"radii": (1.0, -2.0)}
     names |= {"r": [0.0, 1.0, 2.0], "f": [0.0, 1.0, 4.0]}
     cls = mdr.KINDS[kind]
     needed = inspect.signature(cls).parameters.values()

@@ -38,6 +38,7 @@ PARAMETERS = {
     "cone": ["slope"],
     "paraboloid": ["radius"],
     "sphere": ["radius"],
+    "two_spheres": ["radii"],
     "ellipsoid": ["radius", "height"],
     "rounded_punch": ["flat_radius", "rounding_radius"],
     "truncated_cone": ["flat_radius", "slope"],
@@ -53,6 +54,8 @@ PARAMETERS = {
 def simple(draw: st.DrawFn) -> dict[str, object]:
     kind = draw(st.sampled_from(list(PARAMETERS)))
     numbers = draw(st.sampled_from([ORDINARY, LENGTHS]))
+    if kind == "two_spheres":
+        return {"kind": kind, "radii": [draw(numbers), draw(st.sampled_from([-1, 1])) * draw(numbers)]}
     return {"kind": kind} | {
         name: draw(SLOPES if name == "slope" else numbers) for name in PARAMETERS[kind]
     }

@@ -165,6 +165,11 @@ class Profile(ABC):
         return "where the profile ends or ceases to be admissible", "extend a table"
 
     @property
+    def body_radii(self) -> tuple[Parameter, Parameter] | None:
+        """Radii of two round bodies, infinite if flat and negative if concave; else None."""
+        return None
+
+    @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         """Radii at which the pressure of every contact that contains them is infinite [length].
 

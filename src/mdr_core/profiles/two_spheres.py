@@ -73,6 +73,10 @@ class TwoSpheres(Profile):
         return self._by_size[1] < 0
 
     @property
+    def body_radii(self) -> tuple[Parameter, Parameter]:
+        return self.radii
+
+    @property
     def domain(self) -> Parameter:
         return self.pole * (_CONFORMING if self.is_socket else END)
 

@@ -21,6 +21,7 @@ from mdr_core.normal import ACCURACY, NormalContact, inaccurate
 from mdr_core.results import Results
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
+from mdr_core.validity import MODEL_ERRORS
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import LoadedQuery
 from mdr_service.schemas.profiles import Profile
@@ -199,15 +200,22 @@ def response(
         found = [notice for notice in found if notice.code != "accuracy"]
         if error > ACCURACY:
             found.append(inaccurate(error))
-    known = np.ravel(source.model_error)
     about = {
         "method": method or source.method,
         "error_estimate": error,
-        # Fields at the end of a history have the error of its last sample.
-        "model_error": known[-1:] if query.loads == 1 else np.full(query.loads, known),
+        **{name: _over_loads(query, getattr(source, name)) for name in MODEL_ERRORS},
         "warnings": [vars(notice) for notice in found],
     }
+    about = {name: value for name, value in about.items() if value is not None}
     return checked(query, values, infinite) | (unchecked or {}) | about
+
+
+def _over_loads(query: Query, error: Array | None) -> Array | None:
+    """Return an error of the model in each load, None if there is none."""
+    known = np.ravel(error)
+    # Fields at the end of a history have the error of its last sample.
+    several = known[-1:] if query.loads == 1 else np.full(query.loads, known)
+    return None if error is None else several
 
 
 def yields(query: Query, source: Any) -> list[validity.Finding]:

@@ -59,6 +59,15 @@ class SolvedAnswer(Answer):
         "Estimate, no bound, of the relative error of depth, force and displacements by the model: "
         "half-space, coupling and transverse slip; 1 for 100 % and more; by load or sample"
     )
+    model_error_radius: list[float] = _number(
+        "Estimate of the relative error of the contact radius under a given force by the model, of "
+        "paraboloids and spheres",
+        default=None,
+    )
+    model_error_pressure: list[float] = _number(
+        "Estimate of the relative error of the pressure under a given force by the model, likewise",
+        default=None,
+    )
     warnings: list[AnswerWarning] = Field(description="Warnings, each with a stable code.")
 
 

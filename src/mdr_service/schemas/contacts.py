@@ -99,6 +99,12 @@ class BodyMaterial(Strict):
 
     youngs_modulus: float = positive("pressure", "Young's modulus E")
     poissons_ratio: float = quantity("1", "Poisson's ratio ν", gt=-1, le=0.5)
+    held: materials.Held = Field(
+        default=None,
+        description="How a round body is held, on which `model_error` depends: between two "
+        "`contacts` (default), on a `stem` or by its equator, `free`, or as a bump of a `block`. "
+        "Impacts take `free`",
+    )
 
 
 # As an enumeration, because a generator of clients takes no constant in a choice.
@@ -114,8 +120,8 @@ def thickness() -> Any:
     return positive(
         "length",
         "Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the "
-        "warning `thin_body`; half-spaces remain the model of the contact. Without it a `sphere` "
-        "counts as a ball of the thickness 2 `radius`, and other profiles as half-spaces",
+        "warning `thin_body`; half-spaces remain the model of the contact. Of a ball it stands for "
+        "its own size",
         default=None,
     )
 
@@ -156,7 +162,9 @@ class Bodies(Elastic):
         """Effective moduli."""
         return materials.from_bodies(
             [
-                materials.RIGID if isinstance(each, str) else materials.Body(**vars(each))
+                materials.RIGID
+                if isinstance(each, str)
+                else materials.Body(**each.model_dump(exclude_unset=True))
                 for each in self.bodies
             ],
             body_thickness=self.body_thickness,
