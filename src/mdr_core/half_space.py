@@ -104,11 +104,8 @@ def _of_round_bodies(contact: LoadedContact, material: Material | None, beta: fl
     found = []
     # Either of two unknown bodies may be the elastic one.
     for first in (1.0, 0.0) if share is None else (share,):
-        shares, compliant = (first, 1 - first), int(first < 1 / 2)
+        shares = first, 1 - first
         factors = [max(_HELD[each], _SOCKET * hollow) for each, hollow in zip(held, concave)]
-        if is_thin(material) and not concave[compliant]:
-            # The thickness of the body stands for its size.
-            factors[compliant] = 0.0
         size = sum(k * s * part for k, s, part in zip(factors, shares, x))
         mean = shares[0] * x[0] + shares[1] * x[1]
         slopes = x[0] * shares[1], x[1] * shares[0]
@@ -121,9 +118,9 @@ def _of_round_bodies(contact: LoadedContact, material: Material | None, beta: fl
     return Errors(*(np.maximum(one, other) for one, other in zip(found[0], found[-1])))
 
 
-def is_thin(material: Material | None) -> bool:
-    """Return True if the more compliant body has a given thickness."""
-    return material is not None and material.body_thickness is not None
+def in_socket(contact: LoadedContact) -> bool:
+    """Return True if one of the bodies is known to be concave."""
+    return any(np.min(radius) < 0 for radius in contact.profile.body_radii or ())
 
 
 def layer(contact: LoadedContact, material: Material | None) -> tuple[Array, Array]:

@@ -126,7 +126,7 @@ def from_bodies(
     bodies : two of `Body` or "rigid", at least one of them elastic; the first has the profile.
     body_thickness : thickness of the more compliant body, bonded to a rigid base [length]. The
         contact remains that of half-spaces: `model_error` and the warning `thin_body` count it.
-        Of a ball it stands for its own size.
+        A ball has its own size as well, of which the larger error counts.
 
     Raises
     ------

@@ -152,8 +152,12 @@ def model_error(contact: SolvedContact, material: Material | None) -> Array:
 
     Parameters: see `findings`.
     """
-    error = half_space.errors(contact.normal, material).force
-    error = error + half_space.layer(contact.normal, material)[1]
+    errors, (_, layer) = (
+        each(contact.normal, material) for each in (half_space.errors, half_space.layer)
+    )
+    # Both thickness and radius give the finite size of a ball.
+    counted = 0.0 if half_space.in_socket(contact.normal) else errors.size
+    error = errors.force + np.maximum(layer - counted, 0.0)
     if contact.g_star is not None:
         beta = 0.0 if material is None else material.dundurs_beta or 0.0
         ratio = half_space.largest_ratio(material)
@@ -227,7 +231,7 @@ def of_normal_contact(
     """
     errors, radii = half_space.errors(contact, material), contact.profile.body_radii
     is_known = material is not None and material.dundurs_beta is not None
-    in_socket = radii is not None and any(some(number(1.0) * radius < 0) for radius in radii)
+    in_socket = half_space.in_socket(contact)
     instead: Remedy = "conforming_contact" if in_socket else "finite_elements"
     model = "a model of conforming contact" if in_socket else "finite elements"
 
@@ -261,7 +265,7 @@ def of_normal_contact(
         )
 
     found = [_above_limit("half_space", errors.force, message, instead)]
-    if half_space.is_thin(material):
+    if material is not None and material.body_thickness is not None:
         found.append(_thin_body(contact, material))
     if radii is not None:
         found.append(_large_strain(contact))

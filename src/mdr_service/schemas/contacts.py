@@ -120,8 +120,7 @@ def thickness() -> Any:
     return positive(
         "length",
         "Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the "
-        "warning `thin_body`; half-spaces remain the model of the contact. Of a ball it stands for "
-        "its own size",
+        "warning `thin_body`; half-spaces remain the model of the contact",
         default=None,
     )
 
