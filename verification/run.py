@@ -91,16 +91,11 @@ def cases() -> Iterator[Case]:
 
 
 def results(client: Client) -> list[Row]:
-    """Return every case with its deviation; equal requests are sent once.
-
-    The library answers those of torsion, the service the others.
-    """
+    """Return every case with its deviation; equal requests are sent once."""
     seen: dict[str, Any] = {}
     rows = []
     for case in cases():
         key = case.path + json.dumps(case.request)
-        if key not in seen and case.path == torsion.PATH:
-            seen[key] = torsion.respond(case.request)
         if key not in seen:
             response = client.post(case.path, case.request)
             if response.status_code != 200:
@@ -138,8 +133,7 @@ def page(rows: Iterable[Row]) -> str:
     met = sum(row.met for row in rows)
     own = sum(row.case.source in _OWN for row in rows)
     summary = (
-        f"{len(rows)} cases, each sent by `make verification` to the HTTP service, or if about "
-        "torsion to the library: "
+        f"{len(rows)} cases, each sent to the HTTP service by `make verification`: "
         f"{len(rows) - own} from published equations, numbers and codes of "
         f"{len(used) - len(_OWN)} sources, and {own} against independent numerical solutions "
         f"({', '.join(f'`{key}`' for key in _OWN)}). {met} are within their bounds."

@@ -1,7 +1,7 @@
 """Torsion with slip: Lubkin, Deresiewicz, Jaeger, Segalman, and rings of torsional elements.
 
-The library answers these requests. In the ring solution pressure and traction are constant on
-rings, with the pressure of `ring_elements`; it shares nothing with the method of turning discs.
+In the ring solution pressure and traction are constant on rings, with the pressure of
+`ring_elements`; it shares nothing with the method of turning discs.
 """
 
 from collections.abc import Iterator
@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from scipy.special import ellipe as second_kind
 from scipy.special import ellipkm1 as first_kind
 
-from mdr_core import KINDS, fields, materials, normal, torsion
 from verification import ring_elements
 from verification.case import Case, Json, at
 
@@ -23,26 +22,6 @@ MU: Final = 0.3
 Array = NDArray[np.float64]
 # Points of Gauss's rule on a ring, and on a half of one next to its own middle.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
-
-
-def respond(request: Json) -> Json:
-    """Return the results of the library for a request, by name."""
-    kind, *_ = given = dict(request["profile"]).values()
-    profile = KINDS[str(kind)](*list(given)[1:])
-    bodies = request["material"].get("bodies")
-    pair = (
-        materials.from_bodies([materials.Body(**body) for body in bodies])
-        if bodies
-        else materials.Material(**request["material"])
-    )
-    contact = normal.solve(profile, pair, **request["load"])
-    twist = torsion.solve(contact, pair, request["friction_coefficient"], **request["torsion"])
-    found = {name: np.atleast_1d(value) for name, value in twist.values().items()}
-    cycle = 4 * np.atleast_1d(twist.dissipated_energy)
-    if "radius" not in request:
-        return found | {"energy_per_cycle": cycle}
-    stress = fields.torsional_stress(twist, request["radius"])
-    return found | {"shear_stress": np.atleast_2d(stress)}
 
 
 def _request(profile: Json, load: Json, twist: Json, **moduli: float) -> dict[str, Any]:
@@ -106,10 +85,10 @@ def lubkin() -> Iterator[Case]:
 
 
 def deresiewicz() -> Iterator[Case]:
-    """Rotation and energy per cycle of like spheres under small torques.
+    """Rotation and dissipated energy of like spheres under small torques.
 
     phi = (mu N/(4 G a^2)) [1 - s] [3 - s], s^2 = 1 - 3M/(2 mu N a), with G of either sphere, is
-    exact to the second order in M, and the energy of its loop to the third.
+    exact to the second order in M, and the energy, a quarter of that of its loop, to the third.
     """
     spheres, a, e_star, shear = _like_spheres()
     limit = MU * 4 * e_star * a**3 / 3
@@ -121,7 +100,7 @@ def deresiewicz() -> Iterator[Case]:
         words = f"like spheres, M/(mu N a) = {part}: "
         for name, value, bound in (
             ("rotation", rotation, 0.3 * part**2),
-            ("energy_per_cycle", 3 * part * torque**2 / (16 * shear * a**3), 2 * part),
+            ("dissipated_energy", 3 * part * torque**2 / (64 * shear * a**3), 2 * part),
         ):
             yield Case(
                 *("deresiewicz", "small torques", words + name, PATH, request, at(name), value),

@@ -35,6 +35,11 @@ COMMANDS: Final = {
     ),
     "history": Command("solve a load history", "mdr history request.json -o history.json"),
     "impact": Command("solve oblique impacts", "mdr impact request.json --format csv"),
+    "torsion": Command(
+        "solve a contact twisted about its axis",
+        "mdr torsion --kind paraboloid --radius 0.01 --e-star 1.15e11 --shear-modulus 4e10 "
+        "--friction-coefficient 0.3 --normal-force 10 --rotation 1e-4",
+    ),
     "stress": Command(
         "compute stresses and displacements over the radius",
         f"mdr stress {_STEEL} --normal-force 10 --quantities pressure --points 50 --format csv",

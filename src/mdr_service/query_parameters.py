@@ -59,7 +59,7 @@ _Whole = Annotated[int, BeforeValidator(_whole)] | None
 _Length = Annotated[int, Field(ge=2, le=SETTINGS.max_length), BeforeValidator(_whole)] | None
 # By the type of the field in JSON.
 _TYPES: Final[Mapping[str, Any]] = {"number": _Number, "integer": _Whole}
-_LOADS: Final = frozenset({"load", "tangential", "oscillation"})
+_LOADS: Final = frozenset({"load", "tangential", "torsion", "oscillation"})
 _RENAMED: Final = {"cycles.normal.amplitude": "normal_amplitude", "radius": "r"}
 _TEXTS: Final = {
     "profile.kind": "Kind of profile; POST takes series and tables as well",

@@ -7,9 +7,12 @@ from importlib.metadata import version
 from typing import Any, Final
 
 from mdr_core import __version__
+from mdr_core.impact import Impact
 from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.tangential import TangentialContact
+from mdr_core.torsion import TorsionalContact
 from mdr_core.validity import MODEL_ERRORS
+from mdr_core.wear.evolution import WearEvolution
 from mdr_core.wear.limit import LimitingWear
 
 _NORMAL: Final = tuple(name for name in NORMAL_QUANTITIES if name != "maximum_pressure")
@@ -18,13 +21,18 @@ PULL_OFF: Final = ("pull_off_force", "pull_off_depth", "retraction")
 QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": _NORMAL,
     "tangential": (*_NORMAL, *TangentialContact.quantities),
+    "torsion": (*_NORMAL, *TorsionalContact.quantities),
+    # Without the velocities and the numbers of cycles, which are columns of the input.
+    "impact": Impact.quantities[2:],
     "wear": LimitingWear.quantities,
+    "evolution": WearEvolution.quantities[1:],
 }
 """Quantities that a sweep computes unless some are named, by query."""
 ONLY_IF_NAMED: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": ("maximum_pressure", *MODEL_ERRORS, "data_error", *PULL_OFF),
     "tangential": ("maximum_pressure", "maximum_shear_stress", *MODEL_ERRORS, "data_error"),
-    "wear": ("model_error",),
+    "torsion": ("maximum_pressure", *MODEL_ERRORS, "data_error"),
+    **dict.fromkeys(("impact", "wear", "evolution"), ("model_error",)),
 }
 """Quantities that are computed if they are named. Maxima of fields take a search and can be
 infinite; `data_error` is NaN without a table, the pull-off NaN without adhesion, and the error of
@@ -62,7 +70,7 @@ class Spec:
 
     Parameters
     ----------
-    query : ``normal``, ``tangential`` or ``wear``.
+    query : name of the query, of `QUANTITIES`.
     constants : fields of all cases, by their dotted names.
     quantities : quantities to compute, in the order of the result.
     kept : columns of the input that are copied and not read.

@@ -10,22 +10,12 @@ from urllib.parse import urlencode
 
 import pytest
 
-from mdr_service import openapi
+from mdr_service import openapi, queries
 from mdr_service.schemas.examples import EXAMPLES
 from tests.conftest import Client, running_client
 
-QUERIES = {
-    "normal": ("normal", EXAMPLES["normal"]),
-    "fit": ("normal/fit", EXAMPLES["fit"]),
-    "tangential": ("tangential", EXAMPLES["tangential"]),
-    "history": ("tangential/history", EXAMPLES["history"]),
-    "impact": ("tangential/impact", EXAMPLES["impact"]),
-    "stress": ("stress", EXAMPLES["stress"]),
-    "subsurface": ("subsurface", EXAMPLES["subsurface"]),
-    "wear": ("wear", EXAMPLES["wear"]),
-    "evolution": ("wear/evolution", EXAMPLES["evolution"]),
-    "batch": ("batch", EXAMPLES["batch"]),
-}
+PATHS = {name: query.path.removeprefix("/v1/") for name, query in queries.QUERIES.items()}
+QUERIES = {name: (path, EXAMPLES[name]) for name, path in (PATHS | {"batch": "batch"}).items()}
 DIGITS = 6
 
 

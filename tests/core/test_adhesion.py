@@ -1,4 +1,4 @@
-"""Adhesive contacts would miss closed forms or energy release rate, or lose a stable branch.
+"""Adhesive contacts have their closed forms and energy release rate, on the stable branch.
 
 Expected values are closed forms, evaluated in high precision where they are not elementary, or
 come from scans and quotients that share no root finding with the core.

@@ -1,4 +1,4 @@
-"""Closed-form displacements outside a contact would differ from their integral."""
+"""Closed-form displacements outside a contact equal their integral."""
 
 from __future__ import annotations
 

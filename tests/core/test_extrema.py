@@ -1,4 +1,4 @@
-"""The maximum of a field would be below one of its values, or lie elsewhere."""
+"""The maximum of a field is not below any of its values, and lies where it is taken."""
 
 from math import acosh, cosh, hypot, inf, pi, sqrt
 from typing import Any

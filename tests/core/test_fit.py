@@ -1,4 +1,4 @@
-"""Moduli and contact points from measured curves, or their intervals, would be wrong."""
+"""Moduli and contact points of measured curves lie within their intervals."""
 
 from typing import Any
 

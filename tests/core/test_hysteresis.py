@@ -1,4 +1,4 @@
-"""Wrong G*, mu or intervals from a measured hysteresis loop."""
+"""G*, mu and their intervals are found from a measured hysteresis loop."""
 
 from __future__ import annotations
 

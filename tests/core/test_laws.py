@@ -1,4 +1,4 @@
-"""Normal contacts would break a law of energy, order, inversion or units."""
+"""Normal contacts obey the laws of energy, order, inversion and units."""
 
 from __future__ import annotations
 

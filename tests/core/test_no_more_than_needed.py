@@ -1,4 +1,4 @@
-"""A query would compute more than its results need.
+"""A query computes no more than its results need.
 
 A looser tolerance never costs more, closed forms are used wherever they exist, and results that are
 not requested are not computed.

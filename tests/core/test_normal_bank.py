@@ -1,4 +1,4 @@
-"""Depth, force or radius would miss the stored references under one of the controls."""
+"""Depth, force and radius meet the stored references under each of the controls."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Series with extreme exponents, or with terms that cancel, would lose digits unnoticed."""
+"""Series with extreme exponents or cancelling terms keep the digits that they claim."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pressure would miss the stored references on the axis, at the edge or at a break."""
+"""Pressure meets the stored references on the axis, at the edge and at breaks."""
 
 from __future__ import annotations
 

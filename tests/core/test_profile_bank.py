@@ -1,4 +1,4 @@
-"""f, f', g or g' of a kind would miss the stored references at or beside a break."""
+"""f, f', g and g' of every kind meet the stored references at and beside breaks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The profile behind a curve of force over depth would be another one."""
+"""The profile behind a curve of force over depth is found from the curve."""
 
 import numpy as np
 import pytest

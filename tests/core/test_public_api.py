@@ -1,4 +1,4 @@
-"""A public name would be missing, a result unreadable, or stepping by states wrong."""
+"""Public names exist, results are readable, and stepping by states continues a path."""
 
 import inspect
 import pydoc

@@ -1,4 +1,4 @@
-"""Integrals of functions with poles next to the strip would lose digits."""
+"""Integrals of functions with poles next to the strip keep their digits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Random contacts biased towards cancellation would lose digits."""
+"""Random contacts biased towards cancellation keep their digits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A mended defect of the core would be back."""
+"""Mended defects of the core stay mended."""
 
 from typing import Any
 

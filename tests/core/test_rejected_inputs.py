@@ -1,4 +1,4 @@
-"""Input that only Python can give would be taken, or its error would name another place.
+"""Input that only Python can give is rejected, and the error names its place.
 
 The wrong queries of `tests/service/test_wrong_input.py` reach the same checks over HTTP.
 """

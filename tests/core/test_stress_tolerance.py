@@ -1,4 +1,4 @@
-"""Stresses would miss their tolerance next to a singularity."""
+"""Stresses meet their tolerance next to singularities."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stresses beneath the surface would miss closed forms, balance or their far field."""
+"""Stresses beneath the surface have their closed forms, balance and far field."""
 
 from __future__ import annotations
 

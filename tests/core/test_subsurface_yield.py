@@ -1,4 +1,4 @@
-"""Largest stresses or the onset of yield would differ from the literature."""
+"""Largest stresses and the onset of yield are those of the literature."""
 
 from __future__ import annotations
 

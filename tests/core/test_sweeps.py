@@ -1,4 +1,4 @@
-"""A case in a sweep would have other results than alone."""
+"""A case in a sweep has the results that it has alone."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Wrong fields of a table next to its knots, its edge, its breaks or its last radius."""
+"""Fields of a table are right next to knots, edge, breaks and the last radius."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A table as an instrument writes it, in `tests/data/tables`, would be read wrongly."""
+"""Tables as instruments write them, in `tests/data/tables`, are read with their units."""
 
 import json
 from pathlib import Path

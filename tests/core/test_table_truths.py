@@ -1,4 +1,4 @@
-"""Tables would miss the body that they sample by more than their error estimate."""
+"""Tables meet the body that they sample within their error estimate."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Force, displacement, stick radius or slip width would miss the stored references."""
+"""Force, displacement, stick radius and slip width meet the stored references."""
 
 from __future__ import annotations
 

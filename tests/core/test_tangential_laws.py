@@ -1,4 +1,4 @@
-"""Partial slip would break a law of energy, order, symmetry or units."""
+"""Partial slip obeys the laws of energy, order, symmetry and units."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Wear would break a general law, miss its limit or differ from an explicit scheme."""
+"""Wear obeys general laws, reaches its limit and agrees with an explicit scheme."""
 
 from __future__ import annotations
 

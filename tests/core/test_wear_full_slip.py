@@ -1,4 +1,4 @@
-"""A ball rubbed by strokes longer than its contact would wear by another law than K p S."""
+"""A ball rubbed by strokes longer than its contact wears by the law K p S."""
 
 from __future__ import annotations
 

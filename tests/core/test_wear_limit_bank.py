@@ -1,4 +1,4 @@
-"""The limit of fretting wear would miss the stored references for a kind or control."""
+"""The limit of fretting wear meets the stored references for every kind and control."""
 
 from __future__ import annotations
 

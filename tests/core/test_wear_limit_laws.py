@@ -1,4 +1,4 @@
-"""The wear limit would miss the book's closed forms or not be a fixed point."""
+"""The wear limit has the book's closed forms and is a fixed point."""
 
 from __future__ import annotations
 

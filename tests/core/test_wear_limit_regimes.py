@@ -1,4 +1,4 @@
-"""Stick, full slip or endless wear would not be told from a finite limit."""
+"""Stick, full slip and endless wear are told from a finite limit."""
 
 from __future__ import annotations
 

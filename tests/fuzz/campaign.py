@@ -141,6 +141,11 @@ class Campaign:
             other = self._result_of(name, body | {"load": {"normal_force": result["normal_force"]}})
             if other:
                 yield from _differ("inverse", "indentation_depth", result, other)
+        if name == "torsion" and "torque" in body["torsion"] and random.random() < 0.3:
+            turn = {"rotation": result["rotation"]}
+            other = self._result_of(name, body | {"torsion": turn})
+            if other and "full_slip" not in other["regime"]:
+                yield from _differ("inverse", "torque", result, other)
         given = body.get("tangential", {})
         if name == "tangential" and "tangential_force" in given and random.random() < 0.3:
             shift = {"tangential_displacement": result["tangential_displacement"]}

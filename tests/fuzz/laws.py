@@ -211,6 +211,21 @@ def _largest_stress(result: Result) -> float:
     return max(float(np.nanmax(np.abs(values), initial=0.0)) for values in stresses)
 
 
+def _torsion(
+    query: Mapping[str, Any], result: Result, arrays: dict[str, Array], near: float
+) -> Iterator[str]:
+    yield from _normal(query, result, arrays, near)
+    torque, rotation = np.abs(arrays["torque"]), np.abs(arrays["rotation"])
+    limit = query["friction_coefficient"] * arrays["normal_force"] * arrays["torsion_arm"]
+    if np.any(torque > limit * (1 + 4 * near)):
+        yield "more torque than friction"
+    if np.any(arrays["dissipated_energy"] > torque * rotation * (1 + 4 * near)):
+        yield "more dissipated energy than work"
+    if np.any(arrays["torsional_stiffness"] * rotation > torque * (1 + 4 * near)):
+        yield "the contact stiffens"
+    yield from _stress(query, result, arrays, near)
+
+
 _LAWS: Final = {
     "normal": _normal,
     "tangential": _tangential,
@@ -219,6 +234,7 @@ _LAWS: Final = {
     "wear": _wear,
     "evolution": _evolution,
     "subsurface": _subsurface,
+    "torsion": _torsion,
 }
 
 _RELATIVE_TO_LARGEST: Final = frozenset({"history", "stress", "evolution", "wear"})

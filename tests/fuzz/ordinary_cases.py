@@ -36,7 +36,8 @@ def material(random: Random) -> Moduli:
     g_star = 1 / sum((1 + nu) * (2 - nu) / (2 * E) for E, nu in elastic)
     given: dict[str, Any] = {"bodies": bodies}
     if random.random() < 0.6:
-        given = {"e_star": e_star, "g_star": g_star}
+        twist = 1 / sum(2 * (1 + nu) / E for E, nu in elastic)
+        given = {"e_star": e_star, "g_star": g_star, "shear_modulus": twist}
     if random.random() < 0.1:
         given["yield_strength"] = e_star * spread(random, 1e-4, 1e-1)
     return Moduli(given, e_star, g_star)
@@ -345,6 +346,27 @@ def evolution(random: Random, kind: str | None = None) -> dict[str, Any]:
     return query
 
 
+def torsion(random: Random, kind: str | None = None) -> dict[str, Any]:
+    """Return a query of a twist."""
+    scene = contact(random, kind)
+    mu, a = scene.friction, scene.case.radius
+    typical = {
+        "torque": 0.4 * mu * scene.force * a,
+        # With G of about a third of E*.
+        "rotation": mu * scene.depth / a,
+        "stick_radius": 0.5 * a,
+    }
+    name = random.choice(tuple(typical))
+    query = scene.query | {
+        "friction_coefficient": mu,
+        "load": _load(random, scene, ("indentation_depth", "normal_force", "contact_radius")),
+        "torsion": {name: typical[name] * spread(random, 1e-3, 2.0)},
+    }
+    if random.random() < 0.4:
+        query |= _radii(random, scene) | {"quantities": ["pressure", "shear_stress"]}
+    return query
+
+
 QUERIES: Final[Mapping[str, Callable[..., dict[str, Any]]]] = {
     "normal": normal,
     "tangential": tangential,
@@ -354,10 +376,11 @@ QUERIES: Final[Mapping[str, Callable[..., dict[str, Any]]]] = {
     "wear": wear,
     "evolution": evolution,
     "subsurface": subsurface,
+    "torsion": torsion,
 }
 """The generators by name; `cycles` uses the endpoint of histories."""
 
-_SHARES: Final = (24, 26, 18, 8, 16, 7, 1, 4)
+_SHARES: Final = (24, 26, 18, 8, 16, 7, 1, 4, 10)
 
 
 def query(random: Random) -> tuple[str, dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""A bank would be incomplete or unsourced, or differ from its own generator."""
+"""Every bank is complete, has its source, and equals what its generator computes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Depth and force of a body of the tables would not be integrals of its slope."""
+"""Depth and force of a body of the tables are integrals of its slope."""
 
 from __future__ import annotations
 

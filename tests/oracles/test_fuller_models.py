@@ -1,4 +1,4 @@
-"""Fuller models that `verification` solves itself would miss their own references."""
+"""Fuller models that `verification` solves itself meet their own references."""
 
 import numpy as np
 import pytest

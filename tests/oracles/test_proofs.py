@@ -1,4 +1,4 @@
-"""Closed forms of the reference equal the quadrature of f', at and beside a break."""
+"""Closed forms of the reference equal the quadrature of f', at and beside breaks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The banks of partial slip would be incomplete, or differ from their generator."""
+"""The banks of partial slip are complete and equal what their generator computes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The slip reference would miss closed forms of the chapter or direct quadrature."""
+"""The slip reference has the closed forms of the chapter and equals direct quadrature."""
 
 from __future__ import annotations
 

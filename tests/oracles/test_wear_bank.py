@@ -1,4 +1,4 @@
-"""The bank of wear limits would be incomplete, or differ from its generator."""
+"""The bank of wear limits is complete and equals what its generator computes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The wear reference would miss the book's equations or direct quadrature."""
+"""The wear reference obeys the book's equations and equals direct quadrature."""
 
 from __future__ import annotations
 

@@ -109,6 +109,7 @@ DRAWN = {
     "normal": ("indentation_depth", "normal_force"),
     "fit": ("indentation_depth", "normal_force", "residual"),
     "impact": ("tangential_velocity", "tangential_rebound_velocity", "dissipated_energy"),
+    "torsion": ("rotation", "torque"),
     "wear": ("stick_radius", "worn_volume", "wear_radius"),
 }
 

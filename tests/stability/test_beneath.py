@@ -1,4 +1,4 @@
-"""Stresses towards surface, edges, axis or far away would lose digits."""
+"""Stresses towards surface, edges and axis, and far away, keep their digits."""
 
 from __future__ import annotations
 

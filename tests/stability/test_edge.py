@@ -1,4 +1,4 @@
-"""Contact edge, r -> a: the pressure would lose the digits of its square root."""
+"""Contact edge, r -> a: the pressure keeps the digits of its square root."""
 
 from __future__ import annotations
 

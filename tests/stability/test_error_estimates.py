@@ -1,4 +1,4 @@
-"""Error estimates of bank cases would be below the true error, or far above it.
+"""Error estimates of bank cases are above the true error, and not far above.
 
 A case is one query. Its estimate and its true error are maxima over its results. True errors are
 resolved to half a unit in the last place only, so smaller values are replaced by that.

@@ -1,4 +1,4 @@
-"""Error estimates would fail for bodies with two very different lengths.
+"""Error estimates hold for bodies with two very different lengths.
 
 The bodies have very flat caps, tips with steep flanks, or contact edges within a few rounding
 errors of a flat. The estimate must cover the rounding error of the loads under any control.

@@ -1,4 +1,4 @@
-"""Powers with exponents n -> 0 and n -> infinity would lose digits."""
+"""Powers with exponents n -> 0 and n -> infinity keep their digits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Edge of a flat, b -> a and b -> 0: an annulus below the rounding error of a would be lost."""
+"""Edge of a flat, b -> a and b -> 0: annuli below the rounding error of a keep their width."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fields of the limiting wear would err beside the stick edge unnoticed."""
+"""Fields of the limiting wear err within their estimate beside the stick edge."""
 
 from __future__ import annotations
 

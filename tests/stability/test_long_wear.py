@@ -1,4 +1,4 @@
-"""Wear from the narrowest annulus to full slip, up to 1e12 cycles, would miss its limit."""
+"""Wear from the narrowest annulus to full slip, up to 1e12 cycles, reaches its limit."""
 
 from __future__ import annotations
 

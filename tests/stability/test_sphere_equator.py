@@ -1,4 +1,4 @@
-"""Sphere, a -> R and a -> 0: digits would be lost at equator or paraboloid limit."""
+"""Sphere, a -> R and a -> 0: digits are kept at the equator and in the paraboloid limit."""
 
 from __future__ import annotations
 

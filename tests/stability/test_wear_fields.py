@@ -1,4 +1,4 @@
-"""Wear fields over the cycles would err by more than their estimate."""
+"""Wear fields over the cycles err by no more than their estimate."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Vanishing load: a result would lose its full relative accuracy."""
+"""Vanishing load: every result keeps its full relative accuracy."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@ each of them, so that its error grows without bound next to an edge. Source: not
 """
 
 from math import inf
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,12 +17,16 @@ from mdr_core.errors import InputError
 from mdr_core.history import ContactState, LoadHistory
 from mdr_core.normal import NormalContact, solve
 from mdr_core.tangential import TangentialContact
+from mdr_core.torsion import TorsionalContact
 from mdr_core.typing import Array
 from mdr_core.validation import extremes, require_type
 
 # Largest error of a field by the error of an edge, relative to its largest value, on a grid with
 # room enough: a tenth of the errors estimated elsewhere.
 _GRID_ERROR: Final = 1e-12
+
+
+Contact = NormalContact | TangentialContact | TorsionalContact
 
 
 class Edges(NamedTuple):
@@ -38,7 +42,7 @@ class Edges(NamedTuple):
     """Distance over which a displacement changes there [length]."""
 
 
-def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
+def edges(contact: Contact | ContactState) -> Edges:
     """Return the contact radii and slip fronts of all loads, with their rounding errors."""
     if isinstance(contact, ContactState):
         radius = np.append(contact.slip_fronts, contact.contact_radius)
@@ -52,16 +56,20 @@ def edges(contact: NormalContact | TangentialContact | ContactState) -> Edges:
     if isinstance(contact, AdhesiveContact):
         a = np.ravel(contact.contact_radius)
         return Edges(a, a * np.ravel(contact.edge_errors), 0 * a, 0 * a)
-    require_type("contact", contact, (NormalContact, TangentialContact), needed)
+    require_type("contact", contact, get_args(Contact), needed)
     normal = contact.normal
     profile, a = normal.profile, normal.contact_radius
     # The coordinate resolves the distance from a flat.
     beyond = a - profile.first_radius
     error, scale = beyond * normal.edge_errors, beyond / profile.steepness
-    if not isinstance(contact, TangentialContact):
+    if isinstance(contact, NormalContact):
         return Edges(*map(np.ravel, (a, error, scale, scale)))
     c, scale = contact.stick_radius, np.minimum(scale, contact.slip_width)
-    at_c, reach = _near_axis(normal, c, scale)
+    if isinstance(contact, TorsionalContact):
+        # The stress in the stick zone rises from 0 at the axis to mu p(c).
+        at_c = reach = np.minimum(scale, c)
+    else:
+        at_c, reach = _near_axis(normal, c, scale)
     parts = (a, c), (error, contact.stick_error), (scale, at_c), (scale, reach)
     return Edges(*(np.ravel([broadcast(part, c.shape) for part in pair]) for pair in parts))
 
@@ -83,9 +91,7 @@ def _near_axis(contact: NormalContact, c: Array, scale: Array) -> tuple[Array, A
         return where(inner, stress, scale), where(inner, profile.depth(top) / slope, scale)
 
 
-def edge_error(
-    contact: NormalContact | TangentialContact | ContactState, name: str, radius: ArrayLike
-) -> float:
+def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) -> float:
     """Return the error of a field by the errors of the edges, relative to its largest value [1].
 
     Edges are the contact radius and the slip fronts if they follow from a load. Radii within four
@@ -148,7 +154,7 @@ def own_error(contact: NormalContact | TangentialContact | LoadHistory) -> float
     return contact.error_estimate
 
 
-def grid(contact: NormalContact | TangentialContact | ContactState, points: int) -> Array:
+def grid(contact: Contact | ContactState, points: int) -> Array:
     """Return radii from 0 to 1.5 times the largest contact radius [length], shape (points,).
 
     They cluster at the axis, the breaks, and the slip fronts and contact radius of every load.
@@ -165,7 +171,7 @@ def grid(contact: NormalContact | TangentialContact | ContactState, points: int)
     InputError : fewer points than such radii.
     """
     known = edges(contact)
-    profile = (contact.normal if isinstance(contact, TangentialContact) else contact).profile
+    profile = (contact if isinstance(contact, ContactState) else contact.normal).profile
     breaks = [np.ravel(np.asarray(b, dtype=float)) for b in profile.breaks]
     end = 1.5 * float(np.max(known.radius)) or 1.0
     if not profile.has_no_partial_slip:

@@ -59,4 +59,6 @@ def torsional_stress(contact: TorsionalContact, radius: ArrayLike) -> Array:
     slips = np.atleast_1d(radius) >= contact.stick_radius[..., None]
     friction = np.broadcast_to(contact.friction_coefficient, shape)[..., None]
     whole = np.where(slips, friction * pressure(normal, radius), size)
-    return np.asarray(np.sign(contact.rotation)[..., None] * whole + 0.0)
+    turned = np.asarray(contact.rotation)[..., None]
+    # Without a twist the stress is zero at the edge of a flat punch as well.
+    return np.where(turned == 0, 0.0, np.copysign(whole, turned)) + 0.0

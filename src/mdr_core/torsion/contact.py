@@ -31,8 +31,8 @@ from mdr_core.validation import (
 
 CONTROLS: Final = ("torque", "rotation", "stick_radius")
 NEEDED: Final = (
-    "a contact from normal.solve, because a twist is exact under a constant normal load alone, "
-    "without a tangential load or a load history"
+    "a normal contact alone, without a tangential load or a load history: it is exact under a "
+    "constant normal load only"
 )
 # Values of ln(a/c) down to which curves are resolved, one after the other until they hold the load.
 _DEPTHS: Final = (1.0, 2.0, 4.0, 8.0, 16.0, DEEPEST)
@@ -140,6 +140,11 @@ class TorsionalContact(validity.ContactResults):
     def slips_from(self) -> Array:
         """Least radius with slip [length]; infinite without."""
         return np.where(self.slip_width > 0, self.stick_radius, np.inf)
+
+    @property
+    def stick_error(self) -> Array:
+        """Rounding error of the stick radius [length]."""
+        return self.error_estimates * np.minimum(self.stick_radius, self.slip_width)
 
     @property
     def error_estimate(self) -> float:

@@ -281,7 +281,9 @@ class LimitingWear(validity.ContactResults):
         product = np.where((away <= ADJACENT * c) | (step <= 0), inf, away * (r + c))
         found, error = [0.0], error + EPS * c
         if "pressure" in names:
-            found.append(np.max(np.where(r < c + error, error * c / product, 0.0)))
+            # 1/sqrt(c - r) changes by no more, and up to all of it where c may be either side of r.
+            changes = error / np.where(product < inf, away, inf)
+            found.append(np.max(np.where(r < c + error, changes, 0.0)))
         if names & {"worn_depth", "limiting_profile"}:
             highest = _HIGHEST * worn_annulus.angle(c, np.ravel(self.wear_width)[:, None])
             worn = (c > 0) & (c - error < r) & (r < end + error)

@@ -13,6 +13,7 @@ from mdr_service.queries.fits import fit_result, solve_fit
 from mdr_service.queries.impacts import impact_result, solve_impact
 from mdr_service.queries.load_paths import history_result, solve_history
 from mdr_service.queries.subsurface import solve_subsurface, subsurface_result
+from mdr_service.queries.torsion import solve_torsion, torsion_result
 from mdr_service.queries.wear import evolution_result, solve_evolution, solve_wear, wear_result
 from mdr_service.schemas import answers
 from mdr_service.schemas.answers import SolvedAnswer
@@ -22,6 +23,7 @@ from mdr_service.schemas.fits import FitQuery
 from mdr_service.schemas.impacts import ImpactQuery
 from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.subsurface import SubsurfaceQuery
+from mdr_service.schemas.torsion import TorsionQuery
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 
 
@@ -93,6 +95,17 @@ _TYPES: Final = (
         answers.ImpactAnswer,
         solve_impact,
         impact_result,
+        is_long=True,
+    ),
+    QueryType(
+        "torsion",
+        "/v1/torsion",
+        "Twist about the axis: torque, rotation and slip",
+        TorsionQuery,
+        answers.TorsionAnswer,
+        solve_torsion,
+        torsion_result,
+        by_parameters="Twist about the axis",
         is_long=True,
     ),
     QueryType(

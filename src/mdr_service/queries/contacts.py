@@ -20,11 +20,13 @@ from mdr_core.impact import Impact
 from mdr_core.normal import ACCURACY, NormalContact, inaccurate
 from mdr_core.results import Results
 from mdr_core.tangential import TangentialContact
+from mdr_core.torsion import TorsionalContact
 from mdr_core.typing import Array, Flags
 from mdr_core.validity import MODEL_ERRORS
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import LoadedQuery
 from mdr_service.schemas.profiles import Profile
+from mdr_service.schemas.torsion import TorsionQuery
 from mdr_service.schemas.wear import WearQuery
 
 Arguments = dict[str, Any]
@@ -36,7 +38,7 @@ Result = dict[str, Any]
 Contact = NormalContact | TangentialContact | LoadHistory
 
 
-def solve_normal(query: NormalQuery | LoadedQuery | WearQuery) -> NormalContact:
+def solve_normal(query: NormalQuery | LoadedQuery | WearQuery | TorsionQuery) -> NormalContact:
     """Compute the frictionless contact of a profile with an elastic half-space.
 
     Every list of the response has one entry per load. `method` names the most expensive method
@@ -116,12 +118,21 @@ def paired(name: str, given: Choice, load: Choice) -> Arguments:
 
 def contact_result(query: NormalQuery, source: NormalContact | TangentialContact) -> Result:
     """Return the quantities of a contact under its loads, with or without friction."""
+    values, infinite = contact_values(query, source)
+    return response(query, source, values, infinite=infinite)
+
+
+def contact_values(
+    query: Query, source: NormalContact | TangentialContact | TorsionalContact
+) -> tuple[Result, dict[str, Any]]:
+    """Return the quantities of a contact by load, and which of them can be infinite."""
     values = by_load(source, query.loads)
-    if source.normal.data_error is not None:
-        values["data_error"] = np.full(query.loads, source.normal.data_error)
+    known = source if isinstance(source, TorsionalContact) else source.normal
+    if known.data_error is not None:
+        values["data_error"] = np.full(query.loads, known.data_error)
     singular = any(notice.code == "singular" for notice in source.warnings)
     names = ("mean_pressure", "maximum_pressure", "normal_stiffness")
-    return response(query, source, values, infinite=dict.fromkeys(names, singular))
+    return values, dict.fromkeys(names, singular)
 
 
 def require_one_of(query: Query, first: str, second: str) -> None:
@@ -189,7 +200,7 @@ def response(
     DefectError : a value is not a number.
     """
     found = [*source.warnings, *validity.notices(yields(query, source))]
-    if not isinstance(query, NormalQuery):
+    if "mean_pressure" not in values:
         # Other responses hold no scalar that is singular; their fields have warnings of their own.
         found = [notice for notice in found if notice.code != "singular"]
     found += warnings

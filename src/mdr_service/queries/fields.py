@@ -129,6 +129,15 @@ def require_few_numbers(query: FieldQuery | SubsurfaceQuery, axis: str = "radius
         raise InputError(("points" if query.points else axis,), detail)
 
 
+def require_radii(query: FieldQuery) -> None:
+    """Raise InputError unless radii are given once at most, and where fields need them."""
+    if query.radius and query.points:
+        raise InputError(("points",), "at most one of radius, points is needed")
+    if "quantities" in query.model_fields_set and not query.radii:
+        raise InputError(("radius",), "quantities over the radius need radius or points")
+    require_few_numbers(query)
+
+
 def _require_consistent(query: StressQuery) -> None:
     """Raise InputError where fields that are valid alone contradict each other."""
     require_loads(query)

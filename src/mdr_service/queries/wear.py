@@ -22,7 +22,7 @@ from mdr_service.queries.contacts import (
     singular,
     solve_normal,
 )
-from mdr_service.queries.fields import require_few_numbers
+from mdr_service.queries.fields import require_radii
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 
 Wear = LimitingWear | WearEvolution
@@ -46,7 +46,7 @@ def solve_wear(query: WearQuery) -> LimitingWear:
     In full slip, wear is unbounded under a constant force (`endless_wear`), and ends in separation
     at a constant depth (`contact_lost`). Without slip there is no wear (`no_wear`).
     """
-    _require_radii(query)
+    require_radii(query)
     amplitude = paired("oscillation", query.oscillation, query.load)
     try:
         return wear_limit.solve(solve_normal(query), **friction(query), **amplitude)
@@ -70,7 +70,7 @@ def solve_evolution(query: EvolutionQuery) -> WearEvolution:
     contact wears: without bound under a constant force (`endless_wear`), at a constant depth until
     contact is lost (`contact_lost`).
     """
-    _require_radii(query)
+    require_radii(query)
     try:
         return wear_evolution.solve(
             normal_contact.solve(**body(query), **control(query.load)),
@@ -122,15 +122,6 @@ def _surface(worn: Wear, name: str, radius: Array, query: WearQuery | EvolutionQ
     """Return one field of a worn contact, by load if it depends on the load."""
     shape = (radius.size,) if name == "initial_profile" else (query.loads, radius.size)
     return np.ascontiguousarray(getattr(worn, name)(radius).reshape(shape))
-
-
-def _require_radii(query: WearQuery | EvolutionQuery) -> None:
-    """Raise InputError unless radii are given once at most, and where fields need them."""
-    if query.radius and query.points:
-        raise InputError(("points",), "at most one of radius, points is needed")
-    if "quantities" in query.model_fields_set and not query.radii:
-        raise InputError(("radius",), "quantities over the radius need radius or points")
-    require_few_numbers(query)
 
 
 def _in_request(error: InputError) -> InputError:

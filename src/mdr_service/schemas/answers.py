@@ -189,6 +189,30 @@ class TangentialAnswer(ContactAnswer):
     regime: _Regime
 
 
+class TorsionAnswer(ContactAnswer):
+    """One entry per pair of normal load and twist in every list; fields only if requested."""
+
+    torque: list[float] = _energy("Torque M")
+    rotation: list[float] = _number("Rotation φ of the bodies in radians")
+    stick_radius: list[float] = _length("Stick radius c, 0 in full slip")
+    slip_width: list[float] = _length("Width a − c of the slip zone")
+    torsional_stiffness: list[float] = _energy(
+        "Torsional stiffness dM/dφ = (16/3) G c³ on further rotation, torque per radian"
+    )
+    dissipated_energy: list[float] = _energy(
+        "Energy dissipated by slip in the twist; a cycle between ±M dissipates four times as much"
+    )
+    torsion_arm: list[float] = _length("Largest torque over µ F_N, which no rotation reaches")
+    regime: _Regime
+    radius: list[float] = _length("Radii r, requested or chosen", default=None)
+    pressure: _Field = _pressure(f"Pressure p(r), by load and radius; {_NULL}", default=None)
+    shear_stress: _Field = _pressure(
+        "Circumferential shear stress τ(r), by load and radius, positive in the direction of a "
+        f"positive torque; {_NULL}",
+        default=None,
+    )
+
+
 class StressAnswer(SolvedAnswer):
     """Requested fields by load and radius; the others are absent."""
 

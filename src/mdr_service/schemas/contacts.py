@@ -94,6 +94,18 @@ class Tangential(Choice):
     )
 
 
+class Torsion(Choice):
+    """Twist about the axis: exactly one control, one value for all normal loads or one for each."""
+
+    torque: SignedScalarOrArray = quantity(
+        "force*length", "Torque M of either sign, |M| below µ F_N times `torsion_arm`", default=None
+    )
+    rotation: SignedScalarOrArray = quantity(
+        "1", "Rotation φ of the bodies in radians, of either sign", default=None
+    )
+    stick_radius: ScalarOrArray = quantity("length", "Stick radius c, at most a", default=None)
+
+
 class BodyMaterial(Strict):
     """Elastic body."""
 
@@ -179,6 +191,11 @@ class Moduli(Elastic):
         "Effective shear modulus G*, 1/G* = Σ (2 − νᵢ)/(4Gᵢ); needed with friction only",
         default=None,
     )
+    shear_modulus: float = positive(
+        "pressure",
+        "Shear modulus G of both bodies, 1/G = Σ 1/Gᵢ; needed with a twist only",
+        default=None,
+    )
     poissons_ratio: float = quantity(
         "1",
         "Poisson's ratio ν of the elastic body, needed for stresses beneath its surface; elsewhere "
@@ -193,7 +210,11 @@ class Moduli(Elastic):
         """Effective moduli."""
         known = (self.poissons_ratio,) if self.has("poissons_ratio") else ()
         return materials.Material(
-            self.e_star, self.g_star, poissons_ratios=known, body_thickness=self.body_thickness
+            self.e_star,
+            self.g_star,
+            poissons_ratios=known,
+            body_thickness=self.body_thickness,
+            shear_modulus=self.shear_modulus,
         )
 
 
@@ -207,7 +228,7 @@ Material = Annotated[
 
 
 # Fields of the loads, normal and tangential.
-_LOADS = ("load", "tangential", "oscillation")
+_LOADS = ("load", "tangential", "torsion", "oscillation")
 
 
 class Axes(NamedTuple):

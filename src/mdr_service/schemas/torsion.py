@@ -1,0 +1,23 @@
+"""Requests about a twist of the contact about its axis."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from mdr_service.schemas.contacts import Axes, Load, Torsion, friction
+from mdr_service.schemas.fields import FieldQuery, OnceEach, quantities
+
+TorsionField = Literal["pressure", "shear_stress"]
+
+
+class TorsionQuery(FieldQuery):
+    """Contact with friction, loaded normally first and then twisted about its axis."""
+
+    axes = Axes("rotation", ("torque",), curves="normal_force")
+
+    load: Load = Field(description="Exactly one control: depth, force or contact radius.")
+    friction_coefficient: float = friction()
+    torsion: Torsion = Field(description="Exactly one control: torque, rotation or stick radius.")
+    quantities: Annotated[list[TorsionField], OnceEach] = quantities(
+        "with `radius` or `points`", default=["shear_stress"]
+    )
