@@ -50,6 +50,7 @@ from mdr_core.profiles import (
     TruncatedCone,
     TruncatedParaboloid,
     TwoSpheres,
+    slope_of_half_angle,
 )
 from mdr_core.table_reader import read_table
 
@@ -93,6 +94,7 @@ __all__ = [
     "impact",
     "normal",
     "read_table",
+    "slope_of_half_angle",
     "subsurface",
     "tangential",
     "torsion",

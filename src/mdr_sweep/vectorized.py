@@ -125,9 +125,9 @@ def _call(
     """Solve the cases that differ from a valid request in the `swept` fields only."""
     given: dict[str, Any] = {name.rpartition(".")[2]: values for name, values in swept.items()}
     if any(name.startswith("profile.") for name in swept):
-        names = vars(query.profile).keys() - {"kind"}
-        parameters = {name: given.get(name, getattr(query.profile, name)) for name in names}
-        given["profile"] = KINDS[query.profile.kind](**parameters)
+        kind: Any = KINDS[query.profile.kind]
+        names = kind.__match_args__
+        given["profile"] = kind(*(given.get(name, getattr(query.profile, name)) for name in names))
 
     moduli = {name: given.pop(name) for name in ("e_star", "g_star") if name in given}
     if moduli:

@@ -213,7 +213,9 @@ TRUE_BODIES = [
 ]
 
 
-@pytest.mark.parametrize(("nu", "other", "force", "of_force", "of_radius", "of_pressure"), TRUE_BODIES)
+@pytest.mark.parametrize(
+    ("nu", "other", "force", "of_force", "of_radius", "of_pressure"), TRUE_BODIES
+)
 def test_errors_of_balls_and_sockets(
     nu: Any, other: float, force: float, of_force: float, of_radius: float, of_pressure: float
 ) -> None:

@@ -85,7 +85,9 @@ def _analytical(random: Random, kind: str, size: float) -> Case:
         ),
     }
     if kind == "two_spheres":
-        other = random.choice((R, R * spread(random, 1.0, 1e3), -R * (1 + spread(random, 1e-3, 1.0))))
+        other = random.choice(
+            (R, R * spread(random, 1.0, 1e3), -R * (1 + spread(random, 1e-3, 1.0)))
+        )
         radii = [R, other]
 
         def gap(r: float) -> float:

@@ -55,7 +55,10 @@ def simple(draw: st.DrawFn) -> dict[str, object]:
     kind = draw(st.sampled_from(list(PARAMETERS)))
     numbers = draw(st.sampled_from([ORDINARY, LENGTHS]))
     if kind == "two_spheres":
-        return {"kind": kind, "radii": [draw(numbers), draw(st.sampled_from([-1, 1])) * draw(numbers)]}
+        return {
+            "kind": kind,
+            "radii": [draw(numbers), draw(st.sampled_from([-1, 1])) * draw(numbers)],
+        }
     return {"kind": kind} | {
         name: draw(SLOPES if name == "slope" else numbers) for name in PARAMETERS[kind]
     }

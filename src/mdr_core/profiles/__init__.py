@@ -4,6 +4,7 @@ from typing import Final
 
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.capped_paraboloid import CappedParaboloid
+from mdr_core.profiles.flanked import slope_of_half_angle
 from mdr_core.profiles.flat_punch import FlatPunch
 from mdr_core.profiles.hyperboloid import Hyperboloid
 from mdr_core.profiles.powers import Cone, Paraboloid, Power
@@ -55,4 +56,5 @@ __all__ = [
     "TruncatedCone",
     "TruncatedParaboloid",
     "TwoSpheres",
+    "slope_of_half_angle",
 ]

@@ -46,6 +46,9 @@ def solve_normal(query: NormalQuery | LoadedQuery | WearQuery | TorsionQuery) ->
     """
     arguments = body(query) | control(query.load)
     given = query.material.model_dump(include=ADHESION, exclude_unset=True)
+    if given and "maximum_pressure" in arguments:
+        detail = "is undetermined with adhesion, under tension at the edge: give another load"
+        raise InputError(("load", "maximum_pressure"), detail)
     solve: Any = adhesion.solve if given else normal_contact.solve
     contact: NormalContact = solve(**arguments, **given)
     return contact
@@ -68,6 +71,8 @@ def profile(model: Profile) -> profiles.Profile:
         for name, value in vars(model).items()
         if name != "kind"
     }
+    if (half_angle := given.pop("half_angle", None)) is not None:
+        given["slope"] = profiles.slope_of_half_angle(half_angle)
     if model.kind == "series":
         given["terms"] = tuple(profiles.PowerTerm(**vars(term)) for term in model.terms)
     return _by_parameters(model.kind, **given)

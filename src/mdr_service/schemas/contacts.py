@@ -78,6 +78,12 @@ class Load(Choice):
         "force", "Normal force F_N, with adhesion down to the pull-off", default=None
     )
     contact_radius: ScalarOrArray = quantity("length", "Contact radius a", default=None)
+    maximum_pressure: ScalarOrArray = quantity(
+        "pressure",
+        "Largest pressure p(r), where it is finite: not under a sharp tip or edge, nor with adhesion "
+        "or of a table",
+        default=None,
+    )
 
 
 class Tangential(Choice):
@@ -279,7 +285,9 @@ class Query(Strict):
 class NormalQuery(Query):
     """Profile pressed into an elastic half-space without friction."""
 
-    load: Load = Field(description="Exactly one control: depth, force or contact radius.")
+    load: Load = Field(
+        description="Exactly one control: depth, force, contact radius or largest pressure."
+    )
 
 
 def friction(**field: Any) -> Any:
