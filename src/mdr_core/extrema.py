@@ -1,7 +1,7 @@
 """Largest pressure and shear stress of a contact, searched where no closed form exists."""
 
 from collections.abc import Callable
-from functools import cache, reduce
+from functools import cache, partial
 from math import comb, inf
 from typing import Final
 
@@ -102,24 +102,23 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
     is infinite under any load, and for one that no contact within the profile has.
     """
     path = ("load", "maximum_pressure")
-    infinite = reduce(np.minimum, profile.infinite_pressure_radii, inf)
-    sharp = number(1.0) * infinite <= profile.first_radius
-    if isinstance(profile, Tabulated) or some(sharp):
-        reason = "is not determined by points" if not some(sharp) else "is infinite under any load"
-        detail = f"the largest pressure of this {profile.kind} {reason}: give another load"
-        raise InputError(path, f"{detail}, or a profile with a smooth tip and smooth edges", sharp)
     require_not_negative(path, target)
-    end = number(1.0) * np.minimum(profile.domain, infinite)
+    infinite = number(inf)
+    for radius in profile.infinite_pressure_radii:
+        infinite = np.minimum(infinite, radius)
+    if isinstance(profile, Tabulated) or some(infinite <= profile.first_radius):
+        reason = "infinite under any load, or not determined by the points of a table"
+        raise InputError(path, f"is {reason}: give another load, or a profile that is smooth")
+    end = np.minimum(infinite, profile.domain)
     last = profile.coordinate_from_radius(where(end < inf, end * (1 - ADJACENT), 1.0))
     beyond = (end < inf) & (target > largest_stress(profile, last, last > 0))
-    require_inside(path, beyond & (infinite > profile.domain), profile)
+    require_inside(path, beyond & (end == profile.domain), profile)
     if some(beyond):
-        detail = f"is reached by no contact: at radius {extremes(infinite)[0]:.12g} it is infinite"
+        detail = f"no contact has it: at radius {extremes(infinite)[0]:.12g} it is infinite"
         raise InputError((*path, *first_index(beyond)), detail, beyond)
     start, low, high = (full(each, target) for each in (last / 2, 0.0, where(end < inf, last, inf)))
-    return invert(
-        lambda edge: pressure_and_slope(profile, edge), target, start, low, high, profile.kind
-    )
+    sloped = partial(pressure_and_slope, profile)
+    return invert(sloped, target, start, low, high, profile.kind)
 
 
 def largest_less_tension(profile: Profile, edge: Array, loaded: Flags, rim: Array) -> Array:

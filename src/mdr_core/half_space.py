@@ -71,20 +71,21 @@ class Errors(NamedTuple):
         """Error of the force at a given depth."""
         return self.size + self.radial + self.slope + self.wall
 
+    @property
+    def parts(self) -> tuple[Parameter, ...]:
+        """Parts of that error by their causes."""
+        return self[:4]
+
 
 def errors(contact: LoadedContact, material: Material | None) -> Errors:
     """Return the estimated errors of a contact; Poisson's ratio 0.3 stands for unknown bodies."""
-    beta = abs(_beta(material))
+    known = None if material is None else material.dundurs_beta
+    beta = abs(_ASSUMED_BETA if known is None else known)
     if contact.profile.body_radii is not None:
         return _of_round_bodies(contact, material, beta)
     slope = _edge_slope(contact)
     wall = _wall_error(contact, None if material is None else material.profile_share)
     return Errors(0 * slope, _RADIAL * beta * slope, slope * slope, wall, slope)
-
-
-def _beta(material: Material | None) -> float:
-    beta = None if material is None else material.dundurs_beta
-    return _ASSUMED_BETA if beta is None else beta
 
 
 def _of_round_bodies(contact: LoadedContact, material: Material | None, beta: float) -> Errors:
@@ -96,26 +97,25 @@ def _of_round_bodies(contact: LoadedContact, material: Material | None, beta: fl
     0.015 sum s_i x_i + 0.1 |beta| m + 0.05 max x_i^2, and the largest pressure
     0.04 sum s_i x_i + 0.3 |beta| m + 0.4 S^2. Source: notes, §8.
     """
-    radii = contact.profile.body_radii or ()
-    x = [contact.contact_radius / np.abs(radius) for radius in radii]
-    concave = [bool(np.min(radius) < 0) for radius in radii]
-    held = ("contacts", "contacts") if material is None else material.held
-    share = None if material is None else material.profile_share
+    bodies = material or Material(1.0)
+    radii = np.broadcast_arrays(*contact.profile.body_radii or ())
+    x1, x2 = (contact.contact_radius / np.abs(radius) for radius in radii)
+    k1, k2 = (
+        max(_HELD[held], _SOCKET * bool(np.min(radius) < 0))
+        for held, radius in zip(bodies.held, radii, strict=True)
+    )
     found = []
     # Either of two unknown bodies may be the elastic one.
-    for first in (1.0, 0.0) if share is None else (share,):
-        shares = first, 1 - first
-        factors = [max(_HELD[each], _SOCKET * hollow) for each, hollow in zip(held, concave)]
-        size = sum(k * s * part for k, s, part in zip(factors, shares, x))
-        mean = shares[0] * x[0] + shares[1] * x[1]
-        slopes = x[0] * shares[1], x[1] * shares[0]
-        common = abs(slopes[0] + (1 if any(concave) else -1) * slopes[1])
-        largest, steepness = np.maximum(*slopes), np.maximum(*x)
-        radius = 0.015 * mean + 0.1 * beta * largest + 0.05 * steepness**2
+    for s1 in (1.0, 0.0) if bodies.profile_share is None else (bodies.profile_share,):
+        s2 = 1 - s1
+        size, mean = k1 * s1 * x1 + k2 * s2 * x2, s1 * x1 + s2 * x2
+        largest, steepest = np.maximum(x1 * s2, x2 * s1), np.maximum(x1, x2)
+        common = abs(x1 * s2 + x2 * s1 * (1 if in_socket(contact) else -1))
+        force = size + size**2, _RADIAL_ROUND * beta * common, 0.1 * common**2, 0.0 * size
+        radius = 0.015 * mean + 0.1 * beta * largest + 0.05 * steepest**2
         pressure = 0.04 * mean + 0.3 * beta * largest + 0.4 * common**2
-        parts = size + size**2, _RADIAL_ROUND * beta * common, 0.1 * common**2, 0.0 * size
-        found.append((*parts, steepness, radius, pressure))
-    return Errors(*(np.maximum(one, other) for one, other in zip(found[0], found[-1])))
+        found.append((*force, steepest, radius, pressure))
+    return Errors(*np.maximum(found[0], found[-1]))
 
 
 def in_socket(contact: LoadedContact) -> bool:

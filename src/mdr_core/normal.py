@@ -222,7 +222,7 @@ def solve(
     contact_radius: ArrayLike | None = None,
     maximum_pressure: ArrayLike | None = None,
 ) -> NormalContact:
-    """Return the normal contact under a prescribed depth, force, contact radius or largest pressure.
+    """Return the normal contact under a depth, a force, a contact radius or a largest pressure.
 
     a(d) inverts d = g(a); F_N = 2 E* int_0^a x g'(x) dx. Inverses without a closed form are
     iterated to rounding error in the contact coordinate.

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from mdr_core.doubles import LARGEST
 from mdr_core.elementwise import some
 from mdr_core.errors import InputError
-from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.typing import Array, Flags
 
 # Sentences about values, which the service uses as well.
 BODIES: Final = 'exactly two bodies are needed, of which one can be "rigid"'

@@ -152,9 +152,8 @@ def model_error(contact: SolvedContact, material: Material | None) -> Array:
 
     Parameters: see `findings`.
     """
-    errors, (_, layer) = (
-        each(contact.normal, material) for each in (half_space.errors, half_space.layer)
-    )
+    errors = half_space.errors(contact.normal, material)
+    _, layer = half_space.layer(contact.normal, material)
     # Both thickness and radius give the finite size of a ball.
     counted = 0.0 if half_space.in_socket(contact.normal) else errors.size
     error = errors.force + np.maximum(layer - counted, 0.0)
@@ -238,7 +237,7 @@ def of_normal_contact(
     def message() -> str:
         total, steepest = extremes(errors.force)[1], extremes(errors.steepness)[1]
         assumed = "" if is_known else f" (Poisson's ratio {ASSUMED_RATIO} assumed)"
-        flat = radii is not None and every(np.isinf(radii[1]))
+        flat = radii is not None and np.all(np.isinf(radii[1]))
         second = " of the first body; the second counts as flat" if flat else ""
         causes = (
             (f"the finite size of the bodies, a/R = {steepest:.2g}{second}", "reduce the load"),
@@ -246,7 +245,7 @@ def of_normal_contact(
             (f"the slope {steepest:.2g} at the contact edge", "reduce the slope there"),
             ("the side wall of the elastic punch", "take a far stiffer punch as rigid"),
         )
-        sizes = [extremes(part)[1] for part in errors[: len(causes)]]
+        sizes = [extremes(part)[1] for part in errors.parts]
         cause, remedy = causes[sizes.index(max(sizes))]
         return (
             f"the half-space approximation has an estimated error of {_per_cent(total)}{assumed}, "
@@ -291,8 +290,8 @@ def _large_strain(contact: LoadedContact) -> Finding:
 
     def message() -> str:
         return (
-            f"the pressure on the axis reaches {extremes(part)[1]:.2g} E*, where strains are large: "
-            "linear elasticity ends; use a smaller load, or finite elements with finite strains"
+            f"the pressure on the axis reaches {extremes(part)[1]:.2g} E*: linear elasticity ends, "
+            "as strains are large; use a smaller load, or finite elements with finite strains"
         )
 
     return _above_limit("large_strain", part, message, "finite_elements")

@@ -16,11 +16,11 @@ from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.quadrature import integrate
 from mdr_core.typing import Array, Flags, Indices, Parameter
 
-SHALLOW: Final = 0.64
-"""a/R up to which h = g'(x)/x rises no faster than x: at 0.6412, the root of the sum of
-(2k + 2)(2k - 1)/(2k + 1) t^2k from k = 1 on less 2, a h'(a) is h(a)."""
-END: Final = 1 - 1e-8
-"""Largest a/R. At the equator the load is infinite, and next to it a does not resolve the load."""
+# a/R up to which h = g'(x)/x rises no faster than x: at 0.6412, the root of the sum of
+# (2k + 2)(2k - 1)/(2k + 1) t^2k from k = 1 on less 2, a h'(a) is h(a).
+_SHALLOW: Final = 0.64
+# Largest a/R. At the equator the load is infinite, and next to it a does not resolve the load.
+_END: Final = 1 - 1e-8
 
 
 class Spheroid(Profile):
@@ -37,7 +37,7 @@ class Spheroid(Profile):
 
     @property
     def domain(self) -> Parameter:
-        return self.radius * END
+        return self.radius * _END
 
     @property
     def scale(self) -> Parameter:
@@ -138,7 +138,7 @@ class Spheroid(Profile):
         return self.height / (pi * self.radius) * stress
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
-        return coordinate <= SHALLOW * self.radius
+        return coordinate <= _SHALLOW * self.radius
 
 
 @dataclass(frozen=True)

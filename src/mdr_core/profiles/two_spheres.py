@@ -2,30 +2,28 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import ClassVar, Final
 
 import numpy as np
 
-from mdr_core.abel.displacement import Branch
-from mdr_core.doubles import EPS
+from mdr_core.abel.annulus import Annulus
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.power_law_integral import power_law_integral
-from mdr_core.profiles.spheroids import END, SHALLOW
+from mdr_core.profiles.spheroids import Spheroid
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validation import require_finite, single
+from mdr_core.validation import as_numbers, require_finite
 
 # a/R of the ball beyond which its half-space in a socket is no estimate: the contact covers 62 to
 # 70 degrees of the ball. Source: notes, §8.
 _CONFORMING: Final = 0.85
-# a/R up to which the pressure in a socket falls from the axis, as in `SHALLOW`: for equal radii a
-# h'(a) is h(a) at 0.4448, the root of the sum of (2k + 2)(2k - 1) t^2k from k = 1 on less 2.
-_SHALLOW_SOCKET: Final = 0.44
+# a/R up to which the pressure in a socket falls from the axis: for equal radii a h'(a) is h(a) at
+# 0.4448, the root of the sum of (2k + 2)(2k - 1) t^2k from k = 1 on less 2. Source: notes, §7.
+_SHALLOW: Final = 0.44
 
 
 @dataclass(frozen=True)
-class TwoSpheres(Profile):
+class TwoSpheres(Spheroid):
     """Gap of two spheres, f = sum R_i - sqrt(R_i^2 - r^2), where R < 0 is the radius of a socket.
 
     g(x) = x artanh(x/R_1) + x artanh(x/R_2). A contact in a socket is rejected beyond 0.85 of the
@@ -51,26 +49,25 @@ class TwoSpheres(Profile):
 
     def __post_init__(self) -> None:
         path = ("profile", "radii")
-        if not isinstance(self.radii, (tuple, list)) or len(self.radii) != 2:
+        radii = as_numbers(path, self.radii)
+        if radii.shape != (2,):
             raise InputError(path, "must be two numbers")
-        radii = tuple(single((*path, i), radius) for i, radius in enumerate(self.radii))
-        require_finite(path, np.array(radii))
-        vars(self)["radii"] = radii
-        small, large = self._by_size
-        if small <= 0 or small + large == 0:
+        require_finite(path, radii)
+        vars(self)["radii"] = tuple(radii.tolist())
+        if self.radius <= 0 or self.radius + self.other == 0:
             detail = "radii are not 0, and a ball is smaller than its socket: 1/R1 + 1/R2 > 0"
             raise InputError(path, detail)
 
-    @cached_property
-    def _by_size(self) -> tuple[float, float]:
-        """Radius of the smaller body, a ball, and of the other one, negative for a socket."""
-        small, large = sorted(self.radii, key=abs)
-        return small, large
+    @property
+    def radius(self) -> float:  # type: ignore[override]  # a field of the other spheroids
+        """Radius of the smaller body, a ball [length]."""
+        return min(self.radii, key=abs)
 
     @property
-    def is_socket(self) -> bool:
-        """True if the larger body is a socket."""
-        return self._by_size[1] < 0
+    def other(self) -> float:
+        """Radius of the other body, negative for a socket [length]."""
+        first, second = self.radii
+        return second if first == self.radius else first
 
     @property
     def body_radii(self) -> tuple[Parameter, Parameter]:
@@ -78,38 +75,22 @@ class TwoSpheres(Profile):
 
     @property
     def domain(self) -> Parameter:
-        return self.pole * (_CONFORMING if self.is_socket else END)
+        return super().domain if self.other > 0 else _CONFORMING * self.radius
 
     @property
     def end(self) -> tuple[str, str]:
         reason = "more than 60 degrees of the ball, where a half-space describes nothing"
-        return (reason, "use a model of a conforming_contact") if self.is_socket else super().end
+        return super().end if self.other > 0 else (reason, "use a model of conforming_contact")
 
     @property
     def scale(self) -> Parameter:
-        # At the radius itself the load is infinite.
-        return self.pole / 2
-
-    @property
-    def pole(self) -> float:
-        return self._by_size[0]
-
-    @property
-    def steepens(self) -> bool:
-        return True
-
-    @property
-    def branches(self) -> tuple[Branch, ...]:
-        return (Branch(0.0, lambda x, _: self.dg(x), pole=self.pole),)
-
-    def rounding_at(self, coordinate: Array) -> Parameter:
-        """Next to the equator that of R - a. See `Profile`."""
-        return self.rounding + EPS / 2 * self.pole / (self.pole - coordinate)
+        # At the equator the load is infinite.
+        return self.radius / 2
 
     def f(self, radius: Array) -> Array:
-        small, large = self._by_size
         root, other, both = self._roots(radius)
-        return radius * (radius * (small + large + both) / ((small + root) * (large + other)))
+        bodies = (self.radius + root) * (self.other + other)
+        return radius * (radius * (self.radius + self.other + both) / bodies)
 
     def df(self, radius: Array) -> Array:
         root, other, both = self._roots(radius)
@@ -117,25 +98,27 @@ class TwoSpheres(Profile):
 
     def _roots(self, r: Array) -> tuple[Array, Array, Array]:
         """sqrt(R^2 - r^2) of both bodies, with the sign of R, and their sum [length]."""
-        small, large = self._by_size
+        small, large = self.radius, self.other
         root, other = (np.sqrt((abs(R) - r) * (abs(R) + r)) for R in (small, large))
-        if self.is_socket:
-            return root, -other, (small - large) * ((small + large) / (root + other))
-        return root, other, root + other
+        if large > 0:
+            return root, other, root + other
+        return root, -other, (small - large) * ((small + large) / (root + other))
 
     def g(self, x: Array) -> Array:
-        """x artanh(x/R_1) + x artanh(x/R_2), as one logarithm. See `Profile`."""
-        small, large = self._by_size
-        return 0.5 * x * np.log1p(2 * x * ((small + large) / ((small - x) * (large - x))))
+        return x * self._artanh_sum(x)
 
     def dg(self, x: Array) -> Array:
         """artanh(x/R_1) + artanh(x/R_2) + x (R_1 + R_2)(R_1 R_2 - x^2)/prod (R_i^2 - x^2)."""
-        small, large = self._by_size
+        small, large = self.radius, self.other
         inner, outer = ((R - x) * (R + x) for R in (small, large))
-        # R_1 R_2 - x^2, free of cancellation next to the equator of equal balls.
+        # (R_1 R_2 - x^2)/inner, free of cancellation next to the equator of equal balls.
         rest = (small * (large - small) + inner) / inner
-        logarithm = np.log1p(2 * x * ((small + large) / ((small - x) * (large - x))))
-        return 0.5 * logarithm + x * rest * ((small + large) / outer)
+        return self._artanh_sum(x) + x * rest * ((small + large) / outer)
+
+    def _artanh_sum(self, x: Array) -> Array:
+        """artanh(x/R_1) + artanh(x/R_2) as one logarithm, which cancels in no socket [1]."""
+        small, large = self.radius, self.other
+        return 0.5 * np.log1p(2 * x * ((small + large) / ((small - x) * (large - x))))
 
     def reduced_force(self, coordinate: Array) -> Array:
         """2 int_0^a x g'(x) dx, because closed forms cancel in a socket. See `Profile`."""
@@ -150,12 +133,14 @@ class TwoSpheres(Profile):
 
     def _integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
         """int_0^a density(x) dx over v = artanh(x/R), which resolves the pole at the equator."""
-        v = 0.5 * np.log1p(2 * coordinate / (self.pole - coordinate))
 
         def over_v(v: Array) -> Array:
-            return density(self.pole * np.tanh(v)) * (self.pole / np.square(np.cosh(v)))
+            return density(self.radius * np.tanh(v)) * (self.radius / np.square(np.cosh(v)))
 
-        return power_law_integral(over_v, v, 1.0)
+        return power_law_integral(over_v, self._artanh(coordinate), 1.0)
+
+    def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
+        return Profile.pressure_kernel(self, annulus, radius)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
-        return coordinate <= (_SHALLOW_SOCKET if self.is_socket else SHALLOW) * self.pole
+        return coordinate <= _SHALLOW * self.radius

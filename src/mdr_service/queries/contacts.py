@@ -219,19 +219,21 @@ def response(
     about = {
         "method": method or source.method,
         "error_estimate": error,
-        **{name: _over_loads(query, getattr(source, name)) for name in MODEL_ERRORS},
+        **model_errors(source, query.loads),
         "warnings": [vars(notice) for notice in found],
     }
-    about = {name: value for name, value in about.items() if value is not None}
     return checked(query, values, infinite) | (unchecked or {}) | about
 
 
-def _over_loads(query: Query, error: Array | None) -> Array | None:
-    """Return an error of the model in each load, None if there is none."""
-    known = np.ravel(error)
-    # Fields at the end of a history have the error of its last sample.
-    several = known[-1:] if query.loads == 1 else np.full(query.loads, known)
-    return None if error is None else several
+def model_errors(source: Any, loads: int = 1) -> Result:
+    """Return the estimates of the error of the model that there are, over the loads."""
+    known = {name: np.ravel(getattr(source, name)) for name in MODEL_ERRORS}
+    return {
+        # Fields at the end of a history have the error of its last sample.
+        name: error[-1:] if loads == 1 else np.full(loads, error)
+        for name, error in known.items()
+        if error[0] is not None
+    }
 
 
 def yields(query: Query, source: Any) -> list[validity.Finding]:

@@ -5,8 +5,7 @@ import numpy as np
 from mdr_core import fit
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
-from mdr_core.validity import MODEL_ERRORS
-from mdr_service.queries.contacts import ADHESION, Result, checked, profile
+from mdr_service.queries.contacts import ADHESION, Result, checked, model_errors, profile
 from mdr_service.schemas.fits import FitQuery
 
 
@@ -44,10 +43,6 @@ def fit_result(query: FitQuery, source: Fit) -> Result:
         **checked(query, values),
         "method": source.method,
         "error_estimate": source.error_estimate,
-        **{
-            name: np.atleast_1d(error)
-            for name in MODEL_ERRORS
-            if (error := getattr(source, name)) is not None
-        },
+        **model_errors(source),
         "warnings": [vars(notice) for notice in source.warnings if notice.code != "singular"],
     }

@@ -12,6 +12,7 @@ from mdr_service.schemas.quantities import (
     ScalarOrArray,
     SignedScalarOrArray,
     Strict,
+    left_out,
     positive,
     quantity,
 )
@@ -80,8 +81,7 @@ class Load(Choice):
     contact_radius: ScalarOrArray = quantity("length", "Contact radius a", default=None)
     maximum_pressure: ScalarOrArray = quantity(
         "pressure",
-        "Largest pressure p(r), where it is finite: not under a sharp tip or edge, nor with adhesion "
-        "or of a table",
+        "Largest pressure p(r), of profiles without a sharp tip or edge, no tables, no adhesion",
         default=None,
     )
 
@@ -117,11 +117,10 @@ class BodyMaterial(Strict):
 
     youngs_modulus: float = positive("pressure", "Young's modulus E")
     poissons_ratio: float = quantity("1", "Poisson's ratio ν", gt=-1, le=0.5)
-    held: materials.Held = Field(
-        default=None,
-        description="How a round body is held, on which `model_error` depends: between two "
+    held: materials.Held = left_out(
+        "How a round body is held, on which `model_error` depends: between two "
         "`contacts` (default), on a `stem` or by its equator, `free`, or as a bump of a `block`. "
-        "Impacts take `free`",
+        "Impacts take `free`"
     )
 
 
@@ -285,9 +284,7 @@ class Query(Strict):
 class NormalQuery(Query):
     """Profile pressed into an elastic half-space without friction."""
 
-    load: Load = Field(
-        description="Exactly one control: depth, force, contact radius or largest pressure."
-    )
+    load: Load = Field(description="Exactly one control, such as the depth or the force.")
 
 
 def friction(**field: Any) -> Any:

@@ -68,7 +68,7 @@ class TwoSpheresProfile(Strict):
     kind: Literal["two_spheres"]
     radii: list[Signed] = quantity(
         "length",
-        "Radii R₁ of the first body and R₂ of the second one, of a socket negative; 1/R₁ + 1/R₂ > 0",
+        "Radii R₁ of the first body and R₂ of the second, of a socket negative; 1/R₁ + 1/R₂ > 0",
         min_length=2,
         max_length=2,
     )
