@@ -45,36 +45,23 @@ class LoadedContact(Protocol):
 
 
 class Errors(NamedTuple):
-    """Estimated relative errors of each load by the half-space approximation [1].
+    """Estimated relative errors of each load by the half-space approximation [1]."""
 
-    The first four are parts of the error of the force at a given depth, which is larger than that
-    of the depth under a given force.
-    """
-
-    size: Array
-    """By the finite size of round bodies."""
-    radial: Array
-    """By the neglected radial displacement."""
-    slope: Array
-    """By the slope at the contact edge, or of the common surface of round bodies."""
-    wall: Parameter
-    """By the side wall of an elastic punch."""
+    parts: tuple[Array, ...]
+    """Parts of the error of the force at a given depth, which is larger than that of the depth
+    under a given force: by the finite size of round bodies, by the neglected radial displacement,
+    by the slope, and by the side wall of an elastic punch."""
     steepness: Array
     """Slope at the contact edge, or largest a/R of round bodies."""
     radius: Array | None = None
-    """Of the contact radius under a given force; None where the shape of the bodies is unknown."""
+    """Error of the contact radius under a given force; None where the bodies are not round."""
     pressure: Array | None = None
-    """Of the largest pressure under a given force; None likewise."""
+    """Error of the largest pressure under a given force; None likewise."""
 
     @property
     def force(self) -> Array:
         """Error of the force at a given depth."""
-        return self.size + self.radial + self.slope + self.wall
-
-    @property
-    def parts(self) -> tuple[Parameter, ...]:
-        """Parts of that error by their causes."""
-        return self[:4]
+        return np.add.reduce(self.parts)
 
 
 def errors(contact: LoadedContact, material: Material | None) -> Errors:
@@ -85,7 +72,7 @@ def errors(contact: LoadedContact, material: Material | None) -> Errors:
         return _of_round_bodies(contact, material, beta)
     slope = _edge_slope(contact)
     wall = _wall_error(contact, None if material is None else material.profile_share)
-    return Errors(0 * slope, _RADIAL * beta * slope, slope * slope, wall, slope)
+    return Errors((0 * slope, _RADIAL * beta * slope, slope * slope, wall + 0 * slope), slope)
 
 
 def _of_round_bodies(contact: LoadedContact, material: Material | None, beta: float) -> Errors:
@@ -115,7 +102,8 @@ def _of_round_bodies(contact: LoadedContact, material: Material | None, beta: fl
         radius = 0.015 * mean + 0.1 * beta * largest + 0.05 * steepest**2
         pressure = 0.04 * mean + 0.3 * beta * largest + 0.4 * common**2
         found.append((*force, steepest, radius, pressure))
-    return Errors(*np.maximum(found[0], found[-1]))
+    *parts, steepest, radius, pressure = np.maximum(found[0], found[-1])
+    return Errors(tuple(parts), steepest, radius, pressure)
 
 
 def in_socket(contact: LoadedContact) -> bool:

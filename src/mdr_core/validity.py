@@ -7,8 +7,10 @@ The codes are `table_end`, `smoothed`, `half_space`, `thin_body`, `large_strain`
 Source: notes, §8.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
+from importlib.resources import files
 from typing import ClassVar, Final, NamedTuple, Protocol
 
 import numpy as np
@@ -23,6 +25,9 @@ from mdr_core.results import Results
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes
 
+_SOURCES: Final[Mapping[str, Sequence[str]]] = json.loads(
+    files("mdr_core").joinpath("sources.json").read_text("utf-8")
+)
 MODEL_ERRORS: Final = ("model_error", "model_error_radius", "model_error_pressure")
 """Estimates of the error of the model; the last two exist for round bodies alone."""
 # Sizes above which each limit is reported; judgements.
@@ -91,7 +96,15 @@ class SolvedContact(Protocol):
 class ContactResults(Results):
     """Results of a contact, with its warnings."""
 
-    about: ClassVar[tuple[str, ...]] = ("method", "error_estimate", *MODEL_ERRORS, "warnings")
+    about: ClassVar[tuple[str, ...]] = (
+        *("method", "sources", "error_estimate"),
+        *(*MODEL_ERRORS, "warnings"),
+    )
+
+    @property
+    def sources(self: SolvedContact) -> tuple[str, ...]:
+        """Keys of the manual's list of sources, with equations, on which the results rest."""
+        return sources_of(type(self).__name__, self.solved.normal.profile.kind)
 
     @property
     def slips_from(self) -> Parameter:
@@ -130,6 +143,11 @@ def _at_most_1(error: Array | None) -> Array | None:
     return None if error is None else np.minimum(error, 1.0)
 
 
+def sources_of(*names: str) -> tuple[str, ...]:
+    """Return the sources of results, kinds of profile and quantities with these names."""
+    return tuple(dict.fromkeys(source for name in names for source in _SOURCES.get(name, ())))
+
+
 def notices(findings: Iterable[Finding]) -> list[Notice]:
     """Return a warning for each finding that holds in some case."""
     return [
@@ -155,7 +173,7 @@ def model_error(contact: SolvedContact, material: Material | None) -> Array:
     errors = half_space.errors(contact.normal, material)
     _, layer = half_space.layer(contact.normal, material)
     # Both thickness and radius give the finite size of a ball.
-    counted = 0.0 if half_space.in_socket(contact.normal) else errors.size
+    counted = 0.0 if half_space.in_socket(contact.normal) else errors.parts[0]
     error = errors.force + np.maximum(layer - counted, 0.0)
     if contact.g_star is not None:
         beta = 0.0 if material is None else material.dundurs_beta or 0.0

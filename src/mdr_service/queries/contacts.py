@@ -22,7 +22,7 @@ from mdr_core.results import Results
 from mdr_core.tangential import TangentialContact
 from mdr_core.torsion import TorsionalContact
 from mdr_core.typing import Array, Flags
-from mdr_core.validity import MODEL_ERRORS
+from mdr_core.validity import MODEL_ERRORS, sources_of
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import LoadedQuery
 from mdr_service.schemas.profiles import Profile
@@ -218,6 +218,7 @@ def response(
             found.append(inaccurate(error))
     about = {
         "method": method or source.method,
+        "sources": [*dict.fromkeys((*source.sources, *sources_of(*values, *(unchecked or ()))))],
         "error_estimate": error,
         **model_errors(source, query.loads),
         "warnings": [vars(notice) for notice in found],

@@ -42,6 +42,7 @@ def fit_result(query: FitQuery, source: Fit) -> Result:
         "fit": query.fit,
         **checked(query, values),
         "method": source.method,
+        "sources": [*source.sources],
         "error_estimate": source.error_estimate,
         **model_errors(source),
         "warnings": [vars(notice) for notice in source.warnings if notice.code != "singular"],

@@ -32,7 +32,8 @@ def leaves(
         is_pair or node["items"].get("type") not in {"number", "string"}
     ):
         # `#` stands for any index.
-        yield from leaves(root, node["items"], f"{name}.#")
+        described = {"description": node.get("description", "")} | node["items"]
+        yield from leaves(root, described, f"{name}.#")
     elif node.get("type") in {"array", "number", "integer", "string"}:
         yield name, node
 
