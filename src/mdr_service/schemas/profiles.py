@@ -31,7 +31,7 @@ class _Flanked(Strict, json_schema_extra=one_of("slope", "half_angle")):
         "degree",
         "Angle between the axis and the flank, in place of the slope tan(90° − half_angle)",
         ge=1e-4,
-        lt=90,
+        le=89.9999,
         default=None,
     )
 
