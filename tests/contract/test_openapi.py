@@ -80,7 +80,10 @@ def test_every_profile_field_states_its_dimension() -> None:
         fields = DOCUMENT["components"]["schemas"][kind]["properties"]
         for name in set(fields) - {"kind", "terms"}:
             description = fields[name]["description"]
-            assert description.endswith((*DIMENSIONS, "[length^(1-exponent)]", "[degree]")), (kind, name)
+            assert description.endswith((*DIMENSIONS, "[length^(1-exponent)]", "[degree]")), (
+                kind,
+                name,
+            )
 
 
 def test_every_profile_states_the_limits_of_its_numbers() -> None:

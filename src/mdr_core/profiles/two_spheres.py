@@ -42,8 +42,8 @@ class TwoSpheres(Spheroid):
 
     kind: ClassVar[str] = "two_spheres"
     formula: ClassVar[str] = (
-        "Σ sign(Rᵢ)·(|Rᵢ| − √(Rᵢ² − r²)), R < 0 for a socket, contact radius < |Rᵢ|, "
-        "in a socket at most 0.85 R of the ball"
+        "both spheres radius − √(radius² − r²), that of a socket subtracted; "
+        "in a socket contact radius ≤ 0.85 of the ball's"
     )
     closed_forms: ClassVar[tuple[str, ...]] = ()
 
