@@ -39,9 +39,13 @@ class LoadedContact(Protocol):
     @property
     def contact_radius(self) -> Array: ...
     @property
+    def mean_pressure(self) -> Array: ...
+    @property
     def loaded(self) -> Flags: ...
     @property
     def material(self) -> Material | None: ...
+    @property
+    def half_space_errors(self) -> "Errors": ...
 
 
 class Errors(NamedTuple):
@@ -61,11 +65,19 @@ class Errors(NamedTuple):
     @property
     def force(self) -> Array:
         """Error of the force at a given depth."""
-        return np.add.reduce(self.parts)
+        size, radial, slope, wall = self.parts
+        return size + radial + slope + wall
 
 
 def errors(contact: LoadedContact, material: Material | None) -> Errors:
     """Return the estimated errors of a contact; Poisson's ratio 0.3 stands for unknown bodies."""
+    if material is contact.material:
+        return contact.half_space_errors
+    return of_material(contact, material)
+
+
+def of_material(contact: LoadedContact, material: Material | None) -> Errors:
+    """Return the estimated errors of a contact of any material; see `errors`."""
     known = None if material is None else material.dundurs_beta
     beta = abs(_ASSUMED_BETA if known is None else known)
     if contact.profile.body_radii is not None:
@@ -85,30 +97,31 @@ def _of_round_bodies(contact: LoadedContact, material: Material | None, beta: fl
     0.04 sum s_i x_i + 0.3 |beta| m + 0.4 S^2. Source: notes, §8.
     """
     bodies = material or Material(1.0)
-    radii = np.broadcast_arrays(*contact.profile.body_radii or ())
-    x1, x2 = (contact.contact_radius / np.abs(radius) for radius in radii)
+    radii = contact.profile.body_radii or ()
+    x1, x2 = (contact.contact_radius / abs(radius) for radius in radii)
     k1, k2 = (
-        max(_HELD[held], _SOCKET * bool(np.min(radius) < 0))
+        max(_HELD[held], _SOCKET * is_concave(radius))
         for held, radius in zip(bodies.held, radii, strict=True)
     )
+    sign = 1 if any(map(is_concave, radii)) else -1
     found = []
     # Either of two unknown bodies may be the elastic one.
     for s1 in (1.0, 0.0) if bodies.profile_share is None else (bodies.profile_share,):
         s2 = 1 - s1
         size, mean = k1 * s1 * x1 + k2 * s2 * x2, s1 * x1 + s2 * x2
         largest, steepest = np.maximum(x1 * s2, x2 * s1), np.maximum(x1, x2)
-        common = abs(x1 * s2 + x2 * s1 * (1 if in_socket(contact) else -1))
+        common = abs(x1 * s2 + sign * x2 * s1)
         force = size + size**2, _RADIAL_ROUND * beta * common, 0.1 * common**2, 0.0 * size
         radius = 0.015 * mean + 0.1 * beta * largest + 0.05 * steepest**2
         pressure = 0.04 * mean + 0.3 * beta * largest + 0.4 * common**2
         found.append((*force, steepest, radius, pressure))
-    *parts, steepest, radius, pressure = np.maximum(found[0], found[-1])
+    *parts, steepest, radius, pressure = found[0] if len(found) == 1 else np.maximum(*found)
     return Errors(tuple(parts), steepest, radius, pressure)
 
 
-def in_socket(contact: LoadedContact) -> bool:
-    """Return True if one of the bodies is known to be concave."""
-    return any(np.min(radius) < 0 for radius in contact.profile.body_radii or ())
+def is_concave(radius: Parameter) -> bool:
+    """Return True for the radius of a socket, which is a single number."""
+    return isinstance(radius, float) and radius < 0
 
 
 def layer(contact: LoadedContact, material: Material | None) -> tuple[Array, Array]:

@@ -7,7 +7,7 @@ from typing import ClassVar, Final, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import validity
+from mdr_core import half_space, validity
 from mdr_core.doubles import ADJACENT, LARGEST, ROUNDING
 from mdr_core.elementwise import broadcast, common_shape, every, some, where
 from mdr_core.equivalent_1d import coordinate_from_radius, load_and_slope
@@ -97,6 +97,11 @@ class NormalContact(validity.ContactResults):
         if not every(falls):
             stress = where(falls, stress, largest_stress(profile, edge, loaded & ~falls))
         return self.e_star * stress
+
+    @cached_property
+    def half_space_errors(self) -> half_space.Errors:
+        """Estimated errors of the half-space approximation; see `mdr_core.half_space`."""
+        return half_space.of_material(self, self.material)
 
     @property
     def loaded(self) -> Flags:

@@ -40,7 +40,7 @@ _LIMITS: Final = {
     "half_space": 0.01,
     # Contact radius over the thickness of a body.
     "thin_body": 0.1,
-    # Pressure on the axis of round bodies over E*, about the largest strain.
+    # Pressure of Hertz, 3/2 of the mean, of round bodies over E*: about the largest strain.
     "large_strain": 0.1,
     # |beta|, by which normal and tangential contact are coupled.
     "elastic_similarity": 0.05,
@@ -130,13 +130,12 @@ class ContactResults(Results):
     @cached_property
     def model_error_radius(self: SolvedContact) -> Array | None:
         """Estimated error of the contact radius under a force [1]; None but of round bodies."""
-        return _at_most_1(half_space.errors(self.solved.normal, self.solved.normal.material).radius)
+        return _at_most_1(self.solved.normal.half_space_errors.radius)
 
     @cached_property
     def model_error_pressure(self: SolvedContact) -> Array | None:
         """Estimated error of the pressure under a force [1]; None but of round bodies."""
-        normal = self.solved.normal
-        return _at_most_1(half_space.errors(normal, normal.material).pressure)
+        return _at_most_1(self.solved.normal.half_space_errors.pressure)
 
 
 def _at_most_1(error: Array | None) -> Array | None:
@@ -173,7 +172,8 @@ def model_error(contact: SolvedContact, material: Material | None) -> Array:
     errors = half_space.errors(contact.normal, material)
     _, layer = half_space.layer(contact.normal, material)
     # Both thickness and radius give the finite size of a ball.
-    counted = 0.0 if half_space.in_socket(contact.normal) else errors.parts[0]
+    is_socket = any(map(half_space.is_concave, contact.normal.profile.body_radii or ()))
+    counted = 0.0 if is_socket else errors.parts[0]
     error = errors.force + np.maximum(layer - counted, 0.0)
     if contact.g_star is not None:
         beta = 0.0 if material is None else material.dundurs_beta or 0.0
@@ -248,7 +248,7 @@ def of_normal_contact(
     """
     errors, radii = half_space.errors(contact, material), contact.profile.body_radii
     is_known = material is not None and material.dundurs_beta is not None
-    in_socket = half_space.in_socket(contact)
+    in_socket = any(map(half_space.is_concave, radii or ()))
     instead: Remedy = "conforming_contact" if in_socket else "finite_elements"
     model = "a model of conforming contact" if in_socket else "finite elements"
 
@@ -303,12 +303,11 @@ def _thin_body(contact: LoadedContact, material: Material | None) -> Finding:
 
 
 def _large_strain(contact: LoadedContact) -> Finding:
-    edge = contact.profile.coordinate_from_radius(contact.contact_radius)
-    part = where(contact.loaded, contact.profile.axis_stress(edge), 0.0)
+    part = 1.5 * contact.mean_pressure / contact.e_star
 
     def message() -> str:
         return (
-            f"the pressure on the axis reaches {extremes(part)[1]:.2g} E*: linear elasticity ends, "
+            f"the pressure of Hertz reaches {extremes(part)[1]:.2g} E*: linear elasticity ends, "
             "as strains are large; use a smaller load, or finite elements with finite strains"
         )
 
