@@ -98,7 +98,7 @@ def _of_round_bodies(contact: LoadedContact, material: Material | None, beta: fl
     """
     bodies = material or Material(1.0)
     radii = contact.profile.body_radii or ()
-    x1, x2 = (contact.contact_radius / abs(radius) for radius in radii)
+    x1, x2 = (contact.contact_radius / np.abs(radius) for radius in radii)
     k1, k2 = (
         max(_HELD[held], _SOCKET * is_concave(radius))
         for held, radius in zip(bodies.held, radii, strict=True)
@@ -115,7 +115,9 @@ def _of_round_bodies(contact: LoadedContact, material: Material | None, beta: fl
         radius = 0.015 * mean + 0.1 * beta * largest + 0.05 * steepest**2
         pressure = 0.04 * mean + 0.3 * beta * largest + 0.4 * common**2
         found.append((*force, steepest, radius, pressure))
-    *parts, steepest, radius, pressure = found[0] if len(found) == 1 else np.maximum(*found)
+    *parts, steepest, radius, pressure = (
+        found[0] if len(found) == 1 else np.maximum(found[0], found[1])
+    )
     return Errors(tuple(parts), steepest, radius, pressure)
 
 
