@@ -1,6 +1,6 @@
 """Limits of validity of the model: findings with stable codes.
 
-The codes are `table_end`, `smoothed`, `half_space`, `thin_body`, `large_strain`, `plastic`,
+The codes are `table_end`, `smoothed`, `tip`, `half_space`, `thin_body`, `large_strain`, `plastic`,
 `elastic_similarity` and `impossible_moduli`; `singular` and `accuracy` come with the results, and
 `yield` from `mdr_core.subsurface`.
 
@@ -16,7 +16,7 @@ from typing import ClassVar, Final, NamedTuple, Protocol
 import numpy as np
 
 from mdr_core import half_space
-from mdr_core.elementwise import every, number, some, where
+from mdr_core.elementwise import every, full, number, some, where
 from mdr_core.errors import Notice, Remedy
 from mdr_core.half_space import ASSUMED_RATIO, LoadedContact
 from mdr_core.materials import Material
@@ -36,6 +36,8 @@ _LIMITS: Final = {
     "table_end": 0.95,
     # Deviation of a table's profile from its points over the depth.
     "smoothed": 1e-3,
+    # Probability of a sharp tip where a table's profile is smooth, or the reverse.
+    "tip": 0.025,
     # Relative error of the half-space approximation.
     "half_space": 0.01,
     # Contact radius over the thickness of a body.
@@ -224,10 +226,25 @@ def smoothed(contact: LoadedContact, profile: Tabulated) -> Finding:
         return (
             f"no smooth admissible profile meets the points: it deviates by {largest:.2g} at "
             f"radius {radius:.3g}, and by {rms:.2g} in the root mean square. The largest deviation "
-            f"is {100 * extremes(part)[1]:.2g} % of the depth: see data_error"
+            f"is {100 * extremes(part)[1]:.2g} % of the depth: see data_error. The point at radius "
+            f"{profile.fit.deciding:.3g} decides most"
         )
 
     return _above_limit("smoothed", part, message)
+
+
+def tip(contact: LoadedContact, profile: Tabulated) -> Finding:
+    """Return `tip`: tables whose points do not tell a sharp tip from a smooth one."""
+    rival = profile.fit.rival
+    other = "smooth" if profile.tip_pressure > 0 else "sharp, with infinite pressure on the axis"
+
+    def message() -> str:
+        return (
+            f"the tip is {other}, with a probability of {_per_cent(rival)}: pressures near the "
+            "axis are open; add points there"
+        )
+
+    return _above_limit("tip", full(rival, contact.contact_radius), message)
 
 
 def of_normal_contact(
@@ -271,8 +288,13 @@ def of_normal_contact(
         )
 
     ratios = () if material is None else material.poissons_ratios
+    profile = contact.profile
+    tip_is_open = isinstance(profile, Tabulated) and profile.fit.rival > _LIMITS["tip"]
 
-    def yields(radius: Parameter) -> Flags:
+    def yields(radius: Parameter) -> Flags | bool:
+        # A tip of a table that may be smooth as well proves nothing.
+        if tip_is_open and radius == 0:
+            return False
         return infinite_deviator(contact.profile, radius, ratios, slips_from)
 
     def places() -> str:

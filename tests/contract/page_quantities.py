@@ -27,7 +27,8 @@ DESCRIBED = [
     "TangentialQuery",
 ]
 # Plain numbers that the page shows as quantities.
-NUMBERS = {"cycles", "data_error", "friction_coefficient", "rotation"}
+ERRORS = {"data_error", "pressure_data_error", "pull_off_data_error"}
+NUMBERS = {"cycles", "friction_coefficient", "rotation"} | ERRORS
 # Dimensions whose unit the page chooses apart from the others of the wire.
 DISPLACEMENTS = re.compile(r"depth|displacement|retraction|slip$|profile|contact_point")
 OWN = {

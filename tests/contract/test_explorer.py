@@ -55,6 +55,18 @@ def test_tab_draws_its_charts_and_passes_axe(visit: Visit, tab: str) -> None:
         assert [(each["id"], each["nodes"][0]["html"]) for each in findings] == []
 
 
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_catalogue_lists_kinds_and_limits_and_passes_axe(visit: Visit, scheme: str) -> None:
+    visit.page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+    visit.page.goto(f"{visit.address}explorer/catalogue.html")
+    visit.page.locator("#limits tbody tr").first.wait_for()
+    kinds = httpx.get(f"{visit.address}v1/profiles").json()["profiles"]
+    assert visit.page.locator("#kinds tbody tr").count() == len(kinds)
+    limits = httpx.get(f"{visit.address}v1/limits").json()
+    assert visit.page.locator("#limits tbody tr").count() == len(limits)
+    assert Axe().run(visit.page).response["violations"] == []
+
+
 def test_every_profile_kind_is_drawn(visit: Visit) -> None:
     visit.open()
     kinds = visit.page.locator("#kind option").evaluate_all("all => all.map(one => one.value)")
@@ -391,7 +403,7 @@ def test_narrow_worn_annulus_fills_its_chart(visit: Visit) -> None:
 def test_wear_coefficient_is_a_worn_volume_per_energy(visit: Visit) -> None:
     visit.open("?tab=wear")
     visit.fill("wear", "2e-4")
-    assert visit.page.locator(".field[data-key=wear]").inner_text().endswith("mm³/J")
+    assert visit.page.locator(".field[data-key=wear] .unit").inner_text() == "mm³/J"
     assert json.loads(request(visit, "Evolution"))["wear_coefficient"] == 2e-13
 
 
@@ -445,6 +457,7 @@ def test_strength_follows_the_material(visit: Visit) -> None:
     assert visit.page.get_attribute("#field-yield1", "placeholder") == "250"
     # The moduli of no listed material leave the strength open.
     visit.fill("e1", "190,5")
+    assert visit.page.input_value("#field-material-1") == "Custom"
     assert visit.page.get_attribute("#field-yield1", "placeholder") == "needed"
     assert visit.number("Yield begins at, von Mises") == "needs a yield strength"
 

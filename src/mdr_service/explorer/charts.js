@@ -47,7 +47,8 @@ function peakOf({ x, y }) {
   const infinite = y.indexOf(null);
   const highest = finite[order.at(-1)];
   if (!(bound > 0) || (infinite < 0 && highest[1] < 2 * bound)) return null;
-  return infinite >= 0 ? { bound, at: x[infinite], value: null } : { bound, at: highest[0], value: highest[1] };
+  const sign = Math.sign(y[x.indexOf(highest[0])]);
+  return { bound, sign, at: infinite >= 0 ? x[infinite] : highest[0], isInfinite: infinite >= 0 };
 }
 
 function curve(trace, spec, inputs, colours) {
@@ -127,11 +128,12 @@ function wrapped(text, most) {
 }
 
 /** Return the note at a peak that the chart cuts. */
-function peakNote({ at, value }, spec, inputs, colours) {
+function peakNote({ at, sign, isInfinite }, spec, inputs, colours) {
   // A finite peak is the value of the nearest radius, which no grid resolves.
-  const text = value === null ? "↑ ∞" : "↑ peak";
+  const text = `${sign < 0 ? "↓" : "↑"} ${isInfinite ? "∞" : "peak"}`;
   return {
-    x: at / unit(spec.x[1], inputs, spec.x[2]).factor, y: 1, yref: "y domain", yanchor: "top", xanchor: "right", xshift: -5,
+    x: at / unit(spec.x[1], inputs, spec.x[2]).factor, y: sign < 0 ? 0 : 1, yref: "y domain",
+    yanchor: sign < 0 ? "bottom" : "top", xanchor: "left", xshift: 5,
     text, showarrow: false, font: { color: colours.marker, size: 12 },
   };
 }
@@ -301,6 +303,8 @@ export async function draw(container, specs, inputs, showRequest) {
     Object.assign(figure, { spec, inputs });
     figure.element.className = `${spec.size ?? ""} ${spec.map ? "map" : ""}`.trim();
     figure.plot.setAttribute("aria-label", `${spec.title}: ${spec.y[0]} against ${spec.x[0]}`);
+    // The legend of a narrow chart has a row for each curve.
+    figure.plot.style.setProperty("--rows", spec.map || spec.traces.length < 3 ? 0 : spec.traces.length - 1);
     // In the order of the description, whatever was there before.
     container.append(figure.element);
     await plot(figure, { autosize: true });

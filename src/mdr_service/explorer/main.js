@@ -86,7 +86,9 @@ function isUsed(key) {
 function change(key, value) {
   unreadable.delete(key);
   inputs = { ...inputs, [key]: value };
-  // Values that follow from the one that has changed.
+  // Material and values that follow from the one that has changed.
+  const body = /^(?:e|nu)([12])$/.exec(key)?.[1];
+  if (body) $(`#field-material-${body}`).value = materialOf(inputs, body) ?? "Custom";
   for (const { key: other, optional, placeholder } of ANALYSES[inputs.tab].fields(inputs)) {
     if (optional) $(`#field-${other}`).placeholder = placeholder;
   }

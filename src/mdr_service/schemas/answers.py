@@ -27,6 +27,13 @@ _Regime = Annotated[
 _NULL = "null where infinite, with a warning `singular`"
 _ROUND = "under a given force by the model, of spheres and paraboloids"
 _UNBOUNDED = "null if wear is unbounded"
+_of_pressure = partial(
+    quantity,
+    "1",
+    "Error of pressures by the points of a table, an estimate relative to the largest pressure; "
+    "null where that is infinite",
+    default=None,
+)
 
 
 class Answer(BaseModel):
@@ -89,6 +96,7 @@ class ContactAnswer(SolvedAnswer):
         "Error by the points of a table, an estimate relative to depth and force",
         default=None,
     )
+    pressure_data_error: list[float | None] = _of_pressure()
 
 
 class NormalAnswer(ContactAnswer):
@@ -102,6 +110,10 @@ class NormalAnswer(ContactAnswer):
     )
     retraction: list[float] = _length(
         "Retraction Δℓ by adhesion, from the contact without adhesion of the same radius",
+        default=None,
+    )
+    pull_off_data_error: list[float] = _number(
+        "Error of the pull-off by the points of a table, an estimate relative to its force",
         default=None,
     )
 
@@ -248,6 +260,7 @@ class StressAnswer(SolvedAnswer):
         "Tangential load q_x of the equivalent foundation at x = r, by load and radius",
         default=None,
     )
+    pressure_data_error: list[float | None] = _of_pressure()
 
 
 class LargestStress(Answer):
