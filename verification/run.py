@@ -14,6 +14,7 @@ from tests.conftest import Client
 from verification import (
     abel_pairs,
     adhesion,
+    conforming_balls,
     frictional_contacts,
     layers,
     measured,
@@ -65,7 +66,7 @@ _NOTES: Final = (
 
 
 # Numerical solutions of the fuller problem, computed here.
-_OWN: Final = ("compressed-ball", "transverse-slip", "ring-elements")
+_OWN: Final = ("compressed-ball", "conforming-balls", "transverse-slip", "ring-elements")
 # Deviations below it, of results conditioned like a difference of loads, are rounding error.
 _ROUNDING: Final = 1e-11
 
@@ -86,7 +87,7 @@ class Row:
 def cases() -> Iterator[Case]:
     """Yield every case."""
     own = (normal_contacts, adhesion, frictional_contacts, oblique_impacts, stresses, abel_pairs)
-    for module in (*own, measured, model_errors, layers, ring_elements, torsion):
+    for module in (*own, conforming_balls, measured, model_errors, layers, ring_elements, torsion):
         yield from module.cases()
 
 

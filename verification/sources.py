@@ -59,6 +59,10 @@ SOURCES: Final = {
         "solid sphere, evaluated in verification/compressed_ball.py; finite elements in "
         "tests/oracles/ball_elements.py agree to 5e-4"
     ),
+    "conforming-balls": (
+        "The gap of two exact spheres, in closed form and by series of the solid ball and of the "
+        "cavity (A. I. Lur'e, 1964), evaluated in verification/conforming_balls.py"
+    ),
     "transverse-slip": (
         "Boundary elements with the displacements of Cerruti and Coulomb's friction: "
         "verification/transverse_slip.py"

@@ -36,7 +36,7 @@ _STATUS: Final = {
 }
 _STANDARD_INPUT: Final = "-"
 # Options that are not numbers.
-_TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities"})
+_TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities", "held_1", "held_2"})
 # Heights between which an area function describes a tip.
 _HEIGHTS: Final = ("largest_height", "lowest_height")
 # Options beside the parameters of the request.

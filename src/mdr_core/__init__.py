@@ -50,6 +50,8 @@ from mdr_core.profiles import (
     Tabulated,
     TruncatedCone,
     TruncatedParaboloid,
+    TwoSpheres,
+    slope_of_half_angle,
 )
 from mdr_core.table_reader import read_curve, read_table
 
@@ -85,6 +87,7 @@ __all__ = [
     "Tabulated",
     "TruncatedCone",
     "TruncatedParaboloid",
+    "TwoSpheres",
     "__version__",
     "adhesion",
     "fields",
@@ -96,6 +99,7 @@ __all__ = [
     "normal",
     "read_curve",
     "read_table",
+    "slope_of_half_angle",
     "subsurface",
     "tangential",
     "torsion",

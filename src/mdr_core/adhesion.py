@@ -392,7 +392,7 @@ def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, 
         depth = amount / (2 * profile.contact_radius(amount)) if of_force else amount
         return np.maximum(depth, 0.0), np.maximum(-depth, 0.0), states
     validation.require_inside(
-        ("load", name), amount > curve.load(name, curve.stable[name][1][-1]), profile.domain
+        ("load", name), amount > curve.load(name, curve.stable[name][1][-1]), profile
     )
     at, states = curve.outermost(name, np.ravel(amount))
     return (at := at.reshape(np.shape(load))[()]), curve.retraction(at), states

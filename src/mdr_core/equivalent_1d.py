@@ -48,7 +48,7 @@ def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
     """
     if not every(profile.domain == inf):
         beyond = contact_radius > profile.domain
-        require_inside(("load", "contact_radius"), beyond, profile.domain)
+        require_inside(("load", "contact_radius"), beyond, profile)
     return profile.coordinate_from_radius(contact_radius)
 
 

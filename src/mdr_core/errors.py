@@ -12,6 +12,7 @@ Remedy = Literal[
     "finite_elements",
     "elastic_plastic",
     "wear_evolution",
+    "conforming_contact",
 ]
 """What a warning names in place of the contact as it is."""
 

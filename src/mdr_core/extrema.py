@@ -1,7 +1,7 @@
 """Largest pressure and shear stress of a contact, searched where no closed form exists."""
 
 from collections.abc import Callable
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from math import comb, inf
 from typing import Final
 
@@ -11,9 +11,11 @@ from scipy.interpolate import BPoly
 from mdr_core.abel.annulus import Annulus, whole
 from mdr_core.doubles import ADJACENT
 from mdr_core.elementwise import full, in_blocks, is_number, number, some, where
-from mdr_core.inversion import MAX_STEPS
-from mdr_core.profiles import Paraboloid, Power, Profile, RoundedPunch
+from mdr_core.errors import InputError
+from mdr_core.inversion import MAX_STEPS, invert
+from mdr_core.profiles import Paraboloid, Power, Profile, RoundedPunch, Tabulated
 from mdr_core.typing import Array, Flags, Indices
+from mdr_core.validation import extremes, first_index, require_inside, require_not_negative
 
 # A stress at a radius, given as a contact coordinate, under the load of that index; all (m,).
 _Field = Callable[[Indices, Array], Array]
@@ -24,6 +26,8 @@ _SAMPLES: Final = 64
 # Relative variation of the stress in the last bracket, and distance from the edge over a, doubled,
 # within which the infinite tension of adhesion is taken to be constant.
 _LEAST_STEP: Final = 1e-13
+# Relative step of the derivative of a searched maximum, whose own error is about 1e-13.
+_DIFFERENCE: Final = 1e-5
 # Points across the bracket of a peak, in parts of it. Each interval of a table, whose interpolation
 # may have a peak in every one, is sampled as finely.
 _NINE: Final = np.linspace(0.0, 1.0, 9)
@@ -84,6 +88,42 @@ def largest_stress(
         one = profile.with_parameters({name: float(value[place]) for name, value in named.items()})
         result[place] = _search(one, *(part[place][None] for part in parts))[0]
     return result
+
+
+def pressure_and_slope(profile: Profile, edge: Array) -> tuple[Array, Array]:
+    """Return the largest pressure over E* and the derivative of its logarithm by that of the edge.
+
+    Parameters: see `largest_stress`.
+    """
+    ends = edge, edge * (1 - _DIFFERENCE)
+    stress, below = (largest_stress(profile, end, end > 0) for end in ends)
+    return stress, np.log(stress / below) / -np.log1p(-_DIFFERENCE)
+
+
+def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
+    """Return the contact coordinate at which the largest pressure over E* has a value.
+
+    Raises InputError for a table, whose points do not determine the pressure, for a pressure that
+    is infinite under any load, and for one that no contact within the profile has.
+    """
+    path = ("load", "maximum_pressure")
+    require_not_negative(path, target)
+    infinite = number(inf)
+    for radius in profile.infinite_pressure_radii:
+        infinite = np.minimum(infinite, radius)
+    if isinstance(profile, Tabulated) or some(infinite <= profile.first_radius):
+        reason = "infinite under any load, or not determined by the points of a table"
+        raise InputError(path, f"is {reason}: give another load, or a profile that is smooth")
+    end = np.minimum(infinite, profile.domain)
+    last = profile.coordinate_from_radius(where(end < inf, end * (1 - ADJACENT), 1.0))
+    beyond = (end < inf) & (target > largest_stress(profile, last, last > 0))
+    require_inside(path, beyond & (end == profile.domain), profile)
+    if some(beyond):
+        detail = f"no contact has it: at radius {extremes(infinite)[0]:.12g} it is infinite"
+        raise InputError((*path, *first_index(beyond)), detail, beyond)
+    start, low, high = (full(each, target) for each in (last / 2, 0.0, where(end < inf, last, inf)))
+    sloped = partial(pressure_and_slope, profile)
+    return invert(sloped, target, start, low, high, profile.kind)
 
 
 def largest_less_tension(profile: Profile, edge: Array, loaded: Flags, rim: Array) -> Array:

@@ -5,7 +5,7 @@ whole impact: displacements determine the forces, and these the displacements, u
 changes. Samples are doubled until the estimated error is small enough. Source: notes, §14.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Final, NamedTuple
 
 import numpy as np
@@ -238,8 +238,11 @@ def solve(
     after, duration, impulse, dissipated, slides = (
         np.reshape(each, speeds.shape)[()] for each in zip(*results, strict=True)
     )
+    known = e_star if isinstance(e_star, Material) else Material(start.e_star)
+    # The depth of bodies that fly counts against their centres.
+    material = replace(known, held=("free", "free"))
     return Impact(
-        normal.solve(profile, e_star, indentation_depth=profile.depth(last)),
+        normal.solve(profile, material, indentation_depth=profile.depth(last)),
         start.g_star,
         speeds[()],
         along[()],
@@ -277,7 +280,7 @@ def _largest_coordinates(profile: Profile, energy: Array) -> Array:
     """Contact coordinates at which E/E* of the contact is the kinetic energy [length^3]."""
     if profile.domain < np.inf:
         beyond = energy > profile.reduced_energy(number(profile.domain))
-        require_inside(("normal_velocity",), beyond, profile.domain, "velocity or the mass")
+        require_inside(("normal_velocity",), beyond, profile, "velocity or the mass")
 
     def stored(s: Array) -> tuple[Array, Array]:
         value = profile.reduced_energy(s)

@@ -2,23 +2,32 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, Literal, TypeVar
+from typing import Final, Literal, TypeVar, get_args
 
 from mdr_core.errors import InputError
 from mdr_core.typing import Parameter
 from mdr_core.validation import BODIES, require_poissons_ratio, require_positive
 
 RIGID: Final = "rigid"
+Held = Literal["contacts", "stem", "free", "block"]
+"""How a round body is held: between two contacts, on a stem or by its equator, as a free body whose
+depth counts against its centre, or as a bump of a block."""
 
 
 @dataclass(frozen=True)
 class Body:
-    """One elastic body: `youngs_modulus` [pressure] > 0, -1 < `poissons_ratio` <= 1/2 [1]."""
+    """One elastic body: `youngs_modulus` [pressure] > 0, -1 < `poissons_ratio` <= 1/2 [1].
+
+    `held` tells how a round body is held, on which `model_error` depends.
+    """
 
     youngs_modulus: float
     poissons_ratio: float
+    held: Held = "contacts"
 
     def __post_init__(self) -> None:
+        if self.held not in get_args(Held):
+            raise InputError(("held",), f"must be one of {', '.join(get_args(Held))}")
         require_positive(("youngs_modulus",), self.youngs_modulus)
         require_poissons_ratio(("poissons_ratio",), self.poissons_ratio)
 
@@ -43,10 +52,11 @@ class Material:
     profile_share: float | None = None
     """Share of the first body, which has the profile, in 1/E* [1]; None where it is unknown."""
     body_thickness: float | None = None
-    """Thickness of the more compliant body on a rigid base [length]; None for a half-space or, of a
-    `Sphere`, a ball."""
+    """Thickness of the more compliant body on a rigid base [length]; None where it is not given."""
     shear_modulus: float | None = None
     """G of a twist, 1/G = 1/G1 + 1/G2 [pressure]; None where it is not given."""
+    held: tuple[Held, Held] = ("contacts", "contacts")
+    """How the bodies are held, if they are round."""
 
     def __post_init__(self) -> None:
         for name in ("e_star", "g_star", "body_thickness", "shear_modulus"):
@@ -116,7 +126,7 @@ def from_bodies(
     bodies : two of `Body` or "rigid", at least one of them elastic; the first has the profile.
     body_thickness : thickness of the more compliant body, bonded to a rigid base [length]. The
         contact remains that of half-spaces: `model_error` and the warning `thin_body` count it.
-        Without it a `Sphere` counts as a ball of the thickness 2R, other profiles as half-spaces.
+        A ball has its own size as well, of which the larger error counts.
 
     Raises
     ------
@@ -149,7 +159,8 @@ def from_bodies(
     twist = sum(1 / body.shear_modulus for body in parts)
     ratios = tuple(body.poissons_ratio for body in parts)
     moduli = 1 / normal, 1 / shear, _dundurs_beta(bodies)
-    return Material(*moduli, ratios, share, body_thickness, 1 / twist)
+    held = tuple(body.held if isinstance(body, Body) else "contacts" for body in bodies)
+    return Material(*moduli, ratios, share, body_thickness, 1 / twist, (held[0], held[1]))
 
 
 def _dundurs_beta(bodies: Sequence[Body | Literal["rigid"]]) -> float:

@@ -7,12 +7,12 @@ from typing import ClassVar, Final, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import validity
+from mdr_core import half_space, validity
 from mdr_core.doubles import ADJACENT, LARGEST, ROUNDING
 from mdr_core.elementwise import broadcast, common_shape, every, some, where
 from mdr_core.equivalent_1d import coordinate_from_radius, load_and_slope
 from mdr_core.errors import InputError, Notice
-from mdr_core.extrema import largest_stress
+from mdr_core.extrema import coordinate_from_pressure, largest_stress, pressure_and_slope
 from mdr_core.materials import Material, normal_modulus
 from mdr_core.profiles import Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
@@ -31,6 +31,8 @@ CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
 ACCURACY: Final = 1e-9
 """Error estimate above which results carry the warning `accuracy`: results next to a limit of their
 method have this accuracy (manual, Speed and accuracy)."""
+# Relative error of a searched maximum. Source: notes, §7.
+_OF_MAXIMUM: Final = 3e-13
 
 # Gauss's rule for the error of pressures, an estimate: nodes on each of equal intervals.
 _OF_PRESSURE: Final = (8, 8)
@@ -104,6 +106,11 @@ class NormalContact(validity.ContactResults):
             stress = where(falls, stress, largest_stress(profile, edge, loaded & ~falls))
         return self.e_star * stress
 
+    @cached_property
+    def half_space_errors(self) -> half_space.Errors:
+        """Estimated errors of the half-space approximation; see `mdr_core.half_space`."""
+        return half_space.of_material(self, self.material)
+
     @property
     def loaded(self) -> Flags:
         """True where the load is not zero."""
@@ -175,6 +182,12 @@ class NormalContact(validity.ContactResults):
         """Upper bound of the relative error of each case, a single number if all have the same."""
         profile = self.profile
         rounding = profile.rounding_at(self.coordinate)
+        if self.control == "maximum_pressure":
+            # Force and depth change by up to (steepness + 1) times as much as the radius.
+            with np.errstate(divide="ignore", invalid="ignore"):
+                slope = pressure_and_slope(profile, self.coordinate)[1]
+            known = where(self.loaded, slope, 1.0)
+            return rounding + _OF_MAXIMUM * (profile.steepness + 1) / known
         if self.control == "contact_radius" or not (profile.flattens or profile.steepens):
             return rounding
         function, error = load_and_slope(profile, of_force=self.control == "normal_force"), rounding
@@ -199,7 +212,8 @@ class NormalContact(validity.ContactResults):
         """Relative error of the contact radius of each case."""
         if self.control == "contact_radius":
             return 0.0
-        return self.error_estimates if self.profile.flattens else ROUNDING
+        is_exact = not self.profile.flattens and self.control != "maximum_pressure"
+        return ROUNDING if is_exact else self.error_estimates
 
     @property
     def error_estimate(self) -> float:
@@ -245,8 +259,9 @@ def solve(
     indentation_depth: ArrayLike | None = None,
     normal_force: ArrayLike | None = None,
     contact_radius: ArrayLike | None = None,
+    maximum_pressure: ArrayLike | None = None,
 ) -> NormalContact:
-    """Return the normal contact under a prescribed depth, force or contact radius.
+    """Return the normal contact under a depth, a force, a contact radius or a largest pressure.
 
     a(d) inverts d = g(a); F_N = 2 E* int_0^a x g'(x) dx. Inverses without a closed form are
     iterated to rounding error in the contact coordinate.
@@ -257,13 +272,14 @@ def solve(
     ----------
     profile : any kind; array parameters broadcast with the load.
     e_star : effective modulus [pressure], > 0, or the material that has it.
-    indentation_depth, normal_force, contact_radius : exactly one, >= 0
-        [length], [force], [length]; a number or an array.
+    indentation_depth, normal_force, contact_radius, maximum_pressure : exactly one, >= 0
+        [length], [force], [length], [pressure]; a number or an array.
 
     Raises
     ------
     InputError : not exactly one load, a load that is negative or not finite, shapes that do not
-        agree, a contact beyond the end of the profile, or a contact radius of a flat punch.
+        agree, a contact beyond the end of the profile, a contact radius of a flat punch, or a
+        pressure that is infinite under any load.
 
     Examples
     --------
@@ -278,8 +294,9 @@ def solve(
     material = e_star if isinstance(e_star, Material) else None
     # A plain number is by far the most frequent case.
     e_star = e_star if isinstance(e_star, float) else normal_modulus(e_star)
-    loads = (indentation_depth, normal_force, contact_radius)
-    name, load = only_one(("load",), dict(zip(CONTROLS, loads, strict=True)))
+    loads = (indentation_depth, normal_force, contact_radius, maximum_pressure)
+    names = (*CONTROLS, "maximum_pressure")
+    name, load = only_one(("load",), dict(zip(names, loads, strict=True)))
     spread = _over_cases(profile, e_star, name, load)
     coordinate = _coordinate(name, profile, e_star, spread)
     contact = NormalContact(profile, e_star, coordinate, name, material)
@@ -309,6 +326,8 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
     with np.errstate(all="ignore"):
         if name == "contact_radius":
             coordinate = coordinate_from_radius(profile, load)
+        elif name == "maximum_pressure":
+            coordinate = coordinate_from_pressure(profile, load / e_star)
         else:
             of_force = name == "normal_force"
             amount = load / e_star if of_force else load

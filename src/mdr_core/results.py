@@ -28,11 +28,12 @@ class Results:
 
         Returns
         -------
-        Quantities and `model_error` as arrays over the loads, or as single numbers for a single
-        load; `method`, `error_estimate`, and `warnings` as a list of dictionaries with the members
-        of `Notice`.
+        Quantities and errors of the model as arrays over the loads, or as single numbers for a
+        single load; `method`, `sources`, `error_estimate`, and `warnings` as a list of dictionaries
+        with the members of `Notice`.
         """
-        values = self.values() | {name: _plain(getattr(self, name)) for name in self.about}
+        about = {name: _plain(getattr(self, name)) for name in self.about}
+        values = self.values() | {name: value for name, value in about.items() if value is not None}
         if "warnings" in values:
             values["warnings"] = [vars(notice) for notice in values["warnings"]]
         return values
@@ -69,4 +70,6 @@ def _short(value: Any, digits: int) -> str:
         )
     if isinstance(value, list):
         return ", ".join(notice["code"] for notice in value) or "none"
+    if isinstance(value, tuple):
+        return "; ".join(value)
     return str(value)

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from mdr_core.doubles import LARGEST
 from mdr_core.elementwise import some
 from mdr_core.errors import InputError
-from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.typing import Array, Flags
 
 # Sentences about values, which the service uses as well.
 BODIES: Final = 'exactly two bodies are needed, of which one can be "rigid"'
@@ -201,25 +201,22 @@ def require_representable(path: tuple[str | int, ...], used: Flags, *results: Ar
 
 
 def require_inside(
-    path: tuple[str, ...], outside: Flags, domain: Parameter, cause: str = "load"
+    path: tuple[str, ...], outside: Flags, profile: Any, cause: str = "load"
 ) -> None:
-    """Raise InputError at the first load under which the contact would exceed the `domain`.
+    """Raise InputError at the first load under which the contact would exceed the profile.
 
     Parameters
     ----------
     path : place of the loads in the input.
     outside : true for the loads that are too large.
-    domain : radius at which the profile ends [length].
+    profile : the profile, with its `domain` and the words for its `end`.
     cause : word for the loads in the message.
     """
     if some(outside):
-        end = np.broadcast_to(domain, outside.shape)[outside].flat[0]
-        raise InputError(
-            (*path, *first_index(outside)),
-            f"the contact would extend beyond radius {end:.12g}, where the profile ends or ceases "
-            f"to be admissible: reduce the {cause}, or extend a table",
-            outside,
-        )
+        end = np.broadcast_to(profile.domain, outside.shape)[outside].flat[0]
+        reason, remedy = profile.end
+        detail = f"the contact would extend beyond radius {end:.12g}, {reason}: reduce the {cause}"
+        raise InputError((*path, *first_index(outside)), f"{detail}, or {remedy}", outside)
 
 
 def require_poissons_ratio(path: tuple[str | int, ...], value: float) -> None:

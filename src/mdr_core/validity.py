@@ -1,26 +1,35 @@
 """Limits of validity of the model: findings with stable codes.
 
-The codes are `table_end`, `smoothed`, `tip`, `half_space`, `thin_body`, `plastic`,
+The codes are `table_end`, `smoothed`, `tip`, `half_space`, `thin_body`, `large_strain`, `plastic`,
 `elastic_similarity` and `impossible_moduli`; `singular` and `accuracy` come with the results, and
 `yield` from `mdr_core.subsurface`.
 
 Source: notes, §8.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
-from typing import Final, NamedTuple, Protocol
+from importlib.resources import files
+from typing import ClassVar, Final, NamedTuple, Protocol
 
 import numpy as np
 
+from mdr_core import half_space
 from mdr_core.elementwise import every, full, number, some, where
 from mdr_core.errors import Notice, Remedy
+from mdr_core.half_space import ASSUMED_RATIO, LoadedContact
 from mdr_core.materials import Material
-from mdr_core.profiles import Profile, Sphere, Tabulated
+from mdr_core.profiles import Profile, Tabulated
 from mdr_core.results import Results
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes
 
+_SOURCES: Final[Mapping[str, Sequence[str]]] = json.loads(
+    files("mdr_core").joinpath("sources.json").read_text("utf-8")
+)
+MODEL_ERRORS: Final = ("model_error", "model_error_radius", "model_error_pressure")
+"""Estimates of the error of the model; the last two exist for round bodies alone."""
 # Sizes above which each limit is reported; judgements.
 _LIMITS: Final = {
     # Contact radius over the last radius of a table.
@@ -33,20 +42,13 @@ _LIMITS: Final = {
     "half_space": 0.01,
     # Contact radius over the thickness of a body.
     "thin_body": 0.1,
+    # Pressure of Hertz, 3/2 of the mean, of round bodies over E*: about the largest strain.
+    "large_strain": 0.1,
     # |beta|, by which normal and tangential contact are coupled.
     "elastic_similarity": 0.05,
 }
 # Room for rounding: a cone of slope 0.1 on incompressible bodies has an error of one per cent.
 _ROOM: Final = 1 + 1e-9
-# Relative error by the neglected radial displacement, over |beta| and the slope of a cone. Source:
-# hay, by F/F_Sneddon to first order; a paraboloid has three quarters.
-_RADIAL: Final = 0.63
-# Poisson's ratio of most metals, assumed where the bodies are unknown, and Dundurs' beta with it.
-ASSUMED_RATIO: Final = 0.3
-_ASSUMED_BETA: Final = (1 - 2 * ASSUMED_RATIO) / (2 * (1 - ASSUMED_RATIO))
-# Compliance that a half-space lacks, over its own 0.46/(E b): that of a cylinder of radius b and
-# length 6 b is L/(pi E b^2).
-_WALL: Final = 3.0
 # Relative change of forces at a given displacement by transverse slip, and of displacements under
 # forces up to 0.998 of full slip, over (nu/(4 - 2 nu))^2. Source: notes, §8.
 _TRANSVERSE: Final = 0.2
@@ -78,21 +80,6 @@ def _above_limit(
     return Finding(code, size > _ROOM * limit, message, size, limit, instead)
 
 
-class LoadedContact(Protocol):
-    """Attributes of a normal contact on which its validity depends."""
-
-    @property
-    def profile(self) -> Profile: ...
-    @property
-    def e_star(self) -> Parameter: ...
-    @property
-    def contact_radius(self) -> Array: ...
-    @property
-    def loaded(self) -> Flags: ...
-    @property
-    def material(self) -> Material | None: ...
-
-
 class SolvedContact(Protocol):
     """A contact with or without friction, on whose bodies its validity depends."""
 
@@ -110,6 +97,16 @@ class SolvedContact(Protocol):
 
 class ContactResults(Results):
     """Results of a contact, with its warnings."""
+
+    about: ClassVar[tuple[str, ...]] = (
+        *("method", "sources", "error_estimate"),
+        *(*MODEL_ERRORS, "warnings"),
+    )
+
+    @property
+    def sources(self: SolvedContact) -> tuple[str, ...]:
+        """Keys of the manual's list of sources, with equations, on which the results rest."""
+        return sources_of(type(self).__name__, self.solved.normal.profile.kind)
 
     @property
     def slips_from(self) -> Parameter:
@@ -131,6 +128,25 @@ class ContactResults(Results):
     def model_error(self: SolvedContact) -> Array:
         """Estimated relative error of the model in each case [1]; see `validity.model_error`."""
         return model_error(self.solved, self.solved.normal.material)
+
+    @cached_property
+    def model_error_radius(self: SolvedContact) -> Array | None:
+        """Estimated error of the contact radius under a force [1]; None but of round bodies."""
+        return _at_most_1(self.solved.normal.half_space_errors.radius)
+
+    @cached_property
+    def model_error_pressure(self: SolvedContact) -> Array | None:
+        """Estimated error of the pressure under a force [1]; None but of round bodies."""
+        return _at_most_1(self.solved.normal.half_space_errors.pressure)
+
+
+def _at_most_1(error: Array | None) -> Array | None:
+    return None if error is None else np.minimum(error, 1.0)
+
+
+def sources_of(*names: str) -> tuple[str, ...]:
+    """Return the sources of results, kinds of profile and quantities with these names."""
+    return tuple(dict.fromkeys(source for name in names for source in _SOURCES.get(name, ())))
 
 
 def notices(findings: Iterable[Finding]) -> list[Notice]:
@@ -155,11 +171,15 @@ def model_error(contact: SolvedContact, material: Material | None) -> Array:
 
     Parameters: see `findings`.
     """
-    *_, error = _half_space(contact.normal, material)
-    error = error + _layer(contact.normal, material)[1]
+    errors = half_space.errors(contact.normal, material)
+    _, layer = half_space.layer(contact.normal, material)
+    # Both thickness and radius give the finite size of a ball.
+    is_socket = any(map(half_space.is_concave, contact.normal.profile.body_radii or ()))
+    counted = 0.0 if is_socket else errors.parts[0]
+    error = errors.force + np.maximum(layer - counted, 0.0)
     if contact.g_star is not None:
         beta = 0.0 if material is None else material.dundurs_beta or 0.0
-        ratio = _largest_ratio(material)
+        ratio = half_space.largest_ratio(material)
         error = error + beta**2 / 3 + _TRANSVERSE * (ratio / (4 - 2 * ratio)) ** 2
     return np.minimum(error, 1.0)
 
@@ -230,35 +250,41 @@ def tip(contact: LoadedContact, profile: Tabulated) -> Finding:
 def of_normal_contact(
     contact: LoadedContact, material: Material | None = None, slips_from: Parameter = np.inf
 ) -> list[Finding]:
-    """Return `half_space`, `thin_body` and `plastic`.
+    """Return `half_space`, `thin_body`, `large_strain` and `plastic`.
 
     `half_space`: the estimated error of the half-space approximation exceeds one per cent. It is
-    of first order in the slope by the neglected radial displacement, and of second order by the
-    geometry; the side wall of an elastic punch adds to it. `thin_body`: the contact radius exceeds
-    a tenth of the thickness of the body, or of a ball. `plastic`: the deviatoric stress is infinite
-    somewhere, which no material can bear.
+    of first order in a/R by the finite size of round bodies, and in the slope by the neglected
+    radial displacement, and of second order by the geometry; the side wall of an elastic punch adds
+    to it. `thin_body`: the contact radius exceeds a tenth of the given thickness of the body.
+    `large_strain`: the pressure of round bodies exceeds a tenth of E*. `plastic`: the deviatoric
+    stress is infinite somewhere, which no material can bear.
 
     `slips_from` is the least radius with slip in each case [length].
 
     Source: hay; notes, §8.
     """
-    radial, slope, wall, error = _half_space(contact, material)
+    errors, radii = half_space.errors(contact, material), contact.profile.body_radii
     is_known = material is not None and material.dundurs_beta is not None
+    in_socket = any(map(half_space.is_concave, radii or ()))
+    instead: Remedy = "conforming_contact" if in_socket else "finite_elements"
+    model = "a model of conforming contact" if in_socket else "finite elements"
 
     def message() -> str:
-        steepest, total, flank = (extremes(each)[1] for each in (slope, error, wall))
+        total, steepest = extremes(errors.force)[1], extremes(errors.steepness)[1]
         assumed = "" if is_known else f" (Poisson's ratio {ASSUMED_RATIO} assumed)"
-        parts = {
-            "the neglected radial displacement": radial * steepest,
-            f"the slope {steepest:.2g} at the contact edge": steepest * steepest,
-            "the side wall of the elastic punch": flank,
-        }
-        cause = max(parts, key=lambda cause: parts[cause])
-        by_wall = parts[cause] == flank
-        remedy = "take a far stiffer punch as rigid" if by_wall else "reduce the slope there"
+        flat = radii is not None and np.all(np.isinf(radii[1]))
+        second = " of the first body; the second counts as flat" if flat else ""
+        causes = (
+            (f"the finite size of the bodies, a/R = {steepest:.2g}{second}", "reduce the load"),
+            ("the neglected radial displacement", "reduce the slope there"),
+            (f"the slope {steepest:.2g} at the contact edge", "reduce the slope there"),
+            ("the side wall of the elastic punch", "take a far stiffer punch as rigid"),
+        )
+        sizes = [extremes(part)[1] for part in errors.parts]
+        cause, remedy = causes[sizes.index(max(sizes))]
         return (
             f"the half-space approximation has an estimated error of {_per_cent(total)}{assumed}, "
-            f"mainly from {cause}; {remedy}, or use finite elements"
+            f"mainly from {cause}; {remedy}, or use {model}"
         )
 
     ratios = () if material is None else material.poissons_ratios
@@ -277,64 +303,37 @@ def of_normal_contact(
             "a real material yields there under any load; round the tip or edge"
         )
 
-    steep = _above_limit("half_space", error, message, "finite_elements")
-    plastic = Finding("plastic", _infinite(contact, yields), places, instead="rounded_tip")
-    return [steep, _thin_body(contact, material), plastic]
+    found = [_above_limit("half_space", errors.force, message, instead)]
+    if material is not None and material.body_thickness is not None:
+        found.append(_thin_body(contact, material))
+    if radii is not None:
+        found.append(_large_strain(contact))
+    return [*found, Finding("plastic", _infinite(contact, yields), places, instead="rounded_tip")]
 
 
 def _thin_body(contact: LoadedContact, material: Material | None) -> Finding:
-    part, error = _layer(contact, material)
-    is_given = material is not None and material.body_thickness is not None
-    over = "thickness" if is_given else "diameter of the ball, over its share in the compliance"
+    part, error = half_space.layer(contact, material)
 
     def message() -> str:
         return (
-            f"the contact radius is {extremes(part)[1]:.3g} times the {over}: the body is stiffer "
-            f"than a half-space by {_per_cent(extremes(error)[1])}; use a smaller load, or finite "
-            "elements"
+            f"the contact radius is {extremes(part)[1]:.3g} times the thickness: the body is "
+            f"stiffer than a half-space by {_per_cent(extremes(error)[1])}; use a smaller load, or "
+            "finite elements"
         )
 
     return _above_limit("thin_body", part, message, "finite_elements")
 
 
-def _layer(contact: LoadedContact, material: Material | None) -> tuple[Array, Array]:
-    """a/h of a body of thickness h, bonded to a rigid base, and its relative error by the base [1].
+def _large_strain(contact: LoadedContact) -> Finding:
+    part = 1.5 * contact.mean_pressure / contact.e_star
 
-    The base reduces the depth by alpha F_N/(pi E* h), to first order in a/h, with the source's
-    approximation of alpha(nu). The force increases by x + x^2, x = (2/pi) alpha a/h, to the second.
+    def message() -> str:
+        return (
+            f"the pressure of Hertz reaches {extremes(part)[1]:.2g} E*: linear elasticity ends, "
+            "as strains are large; use a smaller load, or finite elements with finite strains"
+        )
 
-    Source: dimitriadis; notes, §8.
-    """
-    part = contact.contact_radius / _thickness(contact.profile, material)
-    nu = _largest_ratio(material)
-    x = 2 / np.pi * (1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu) * part
-    return part, x + x * x
-
-
-def _thickness(profile: Profile, material: Material | None) -> Parameter:
-    """As given; of a ball 2R, where the other body is rigid, and more by its share if it is not."""
-    if material is not None and material.body_thickness is not None:
-        return material.body_thickness
-    share = None if material is None else material.profile_share
-    if not isinstance(profile, Sphere) or share == 0:
-        return np.inf
-    return 2 * profile.radius / (share or 1.0)
-
-
-def _largest_ratio(material: Material | None) -> float:
-    """Poisson's ratio, the larger one of two bodies, assumed where they are unknown [1]."""
-    return max(() if material is None else material.poissons_ratios, default=ASSUMED_RATIO)
-
-
-def _half_space(
-    contact: LoadedContact, material: Material | None
-) -> tuple[float, Array, Parameter, Array]:
-    """Radial error over the slope, slope at the edge, error by a punch's side wall, and the sum."""
-    beta = None if material is None else material.dundurs_beta
-    radial = _RADIAL * abs(_ASSUMED_BETA if beta is None else beta)
-    wall = _wall_error(contact, None if material is None else material.profile_share)
-    slope = _edge_slope(contact)
-    return radial, slope, wall, slope * (radial + slope) + wall
+    return _above_limit("large_strain", part, message, "finite_elements")
 
 
 def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Finding:
@@ -425,31 +424,6 @@ def listed(names: Sequence[str]) -> str:
     """Return ascending radii as text, of many the first, the last and their number."""
     many = len(names) > _LISTED
     return f"{names[0]} to {names[-1]} ({len(names)} radii)" if many else ", ".join(names)
-
-
-def _edge_slope(contact: LoadedContact) -> Array:
-    """f'(a) of loaded contacts, else zero [1]."""
-    a, loaded = contact.contact_radius, contact.loaded
-    if contact.profile.has_no_partial_slip or not some(loaded):
-        return full(0.0, a)
-    # The slope at the tip, where nothing is loaded, may be infinite.
-    inside = a if every(loaded) else np.where(loaded, a, np.max(a))
-    return where(loaded, contact.profile.df(inside), 0.0)
-
-
-def _wall_error(contact: LoadedContact, share: float | None) -> Parameter:
-    """Estimated error by the side wall of an elastic body with a flat end, which carries no stress.
-
-    The flank beyond the contact edge counts as far as it is steeper than at the edge, up to the
-    slope 1, and the body by its `share` in the compliance. [1]
-    """
-    profile, a = contact.profile, contact.contact_radius
-    if not share or not some(contact.loaded & (profile.first_radius > 0)):
-        return 0.0
-    reach = np.minimum(2 * a, profile.domain)
-    flank = (profile.f(reach) - profile.f(a)) / a
-    steeper = np.minimum(np.square(flank), 1.0) - np.square(_edge_slope(contact))
-    return where(contact.loaded, _WALL * share * np.maximum(steeper, 0.0), 0.0)
 
 
 def _per_cent(part: float) -> str:

@@ -15,6 +15,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, create_model
 from pydantic_core import PydanticCustomError
 
+from mdr_core import materials
 from mdr_core.errors import InputError
 from mdr_core.validation import FINITE
 from mdr_service import problems
@@ -192,10 +193,8 @@ def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str
         text: str = _TEXTS.get(field) or leaf.get("description", "")
         dimension = text[text.rfind("[") :]
         name = _RENAMED.get(field, name)
-        if group == "material.bodies.#":
-            for body in (1, 2):
-                text = f"`{name}` of body {body}, absent for a rigid body {dimension}"
-                yield f"{name}_{body}", field.replace("#", str(body - 1)), type_, text
+        if group in {"material.bodies.#", "profile.radii"}:
+            yield from _of_both_bodies(field, type_, text)
         elif field == "profile.kind":
             yield name, field, Literal[OF_NUMBERS], text
         elif field == "quantities":
@@ -210,6 +209,15 @@ def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str
             if group == "profile":
                 text = f"`{name}` of the profile, see GET /v1/profiles {dimension}"
             yield name, field, type_, text
+
+
+def _of_both_bodies(field: str, type_: Any, text: str) -> Iterator[tuple[str, str, Any, str]]:
+    """Yield the parameters of both bodies that stand for a field of either."""
+    name = field.rpartition(".")[2].replace("#", "radius")
+    if name == "held":
+        type_ = materials.Held | None
+    for body in (1, 2):
+        yield f"{name}_{body}", field.replace("#", str(body - 1)), type_, f"Body {body}: {text}"
 
 
 def _parameters(model: type[contacts.Query]) -> type[Parameters]:

@@ -11,6 +11,7 @@ from mdr_core.impact import Impact
 from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.tangential import TangentialContact
 from mdr_core.torsion import TorsionalContact
+from mdr_core.validity import MODEL_ERRORS
 from mdr_core.wear.evolution import WearEvolution
 from mdr_core.wear.limit import LimitingWear
 
@@ -28,13 +29,14 @@ QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
 }
 """Quantities that a sweep computes unless some are named, by query."""
 ONLY_IF_NAMED: Final[Mapping[str, tuple[str, ...]]] = {
-    "normal": ("maximum_pressure", "model_error", "data_error", *PULL_OFF),
-    "tangential": ("maximum_pressure", "maximum_shear_stress", "model_error", "data_error"),
-    "torsion": ("maximum_pressure", "model_error", "data_error"),
+    "normal": ("maximum_pressure", *MODEL_ERRORS, "data_error", *PULL_OFF),
+    "tangential": ("maximum_pressure", "maximum_shear_stress", *MODEL_ERRORS, "data_error"),
+    "torsion": ("maximum_pressure", *MODEL_ERRORS, "data_error"),
     **dict.fromkeys(("impact", "wear", "evolution"), ("model_error",)),
 }
 """Quantities that are computed if they are named. Maxima of fields take a search and can be
-infinite; `data_error` is NaN without a table, and the pull-off NaN without adhesion."""
+infinite; `data_error` is NaN without a table, the pull-off NaN without adhesion, and the error of
+radius and pressure NaN but for round bodies."""
 WARNING, ERROR = "warning", "error"
 TEXTS: Final = frozenset({"regime", WARNING, ERROR})
 """Columns of the result that are not numbers."""

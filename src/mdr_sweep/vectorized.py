@@ -64,8 +64,8 @@ def solve(spec: Spec, batch: pa.RecordBatch) -> pa.RecordBatch:
 
 def _is_array(name: str, column: Column) -> bool:
     """Return True if a field can be an array over the cases of one call."""
-    is_term = name.startswith("profile.terms.")
-    return column.field.type == "number" and name.startswith(_ARRAYS) and not is_term
+    in_list = name.startswith(("profile.terms.", "profile.radii."))
+    return column.field.type == "number" and name.startswith(_ARRAYS) and not in_list
 
 
 def _groups(columns: Columns, size: int) -> Iterator[Rows]:
@@ -125,9 +125,9 @@ def _call(
     """Solve the cases that differ from a valid request in the `swept` fields only."""
     given: dict[str, Any] = {name.rpartition(".")[2]: values for name, values in swept.items()}
     if any(name.startswith("profile.") for name in swept):
-        names = vars(query.profile).keys() - {"kind"}
-        parameters = {name: given.get(name, getattr(query.profile, name)) for name in names}
-        given["profile"] = KINDS[query.profile.kind](**parameters)
+        kind: Any = KINDS[query.profile.kind]
+        names = kind.__match_args__
+        given["profile"] = kind(*(given.get(name, getattr(query.profile, name)) for name in names))
 
     moduli = {name: given.pop(name) for name in ("e_star", "g_star") if name in given}
     if moduli:

@@ -75,12 +75,15 @@ def test_every_operation_documents_its_problems(name: str, operation: dict[str, 
 def test_every_profile_field_states_its_dimension() -> None:
     profile = DOCUMENT["components"]["schemas"]["NormalQuery"]["properties"]["profile"]
     kinds = [reference.rpartition("/")[2] for reference in references(profile)]
-    assert len(set(kinds)) == 15
+    assert len(set(kinds)) == 16
     for kind in kinds:
         fields = DOCUMENT["components"]["schemas"][kind]["properties"]
         for name in set(fields) - {"kind", "terms"}:
             description = fields[name]["description"]
-            assert description.endswith((*DIMENSIONS, "[length^(1-exponent)]")), (kind, name)
+            assert description.endswith((*DIMENSIONS, "[length^(1-exponent)]", "[degree]")), (
+                kind,
+                name,
+            )
 
 
 def test_every_profile_states_the_limits_of_its_numbers() -> None:
@@ -163,7 +166,7 @@ def test_every_member_states_its_dimension() -> None:
         for name, field in chain(*(part["properties"].items() for part in parts)):
             if name == "amplitude":
                 assert field["description"].endswith("[as the mean]")
-            elif name not in {"method", "warnings", "regime", "final_state"}:
+            elif name not in {"method", "sources", "warnings", "regime", "final_state"}:
                 assert re.search(r"\[[a-z0-9/*^]+\]$", field["description"]), (query, name)
 
 

@@ -29,6 +29,7 @@ PROFILES: dict[str, dict[str, Any]] = {
     "series": {"terms": [{"coefficient": 0.4, "exponent": 2}, {"coefficient": 0.1, "exponent": 4}]},
     "flat_punch": {"radius": 1.0},
     "sphere": {"radius": 2.0},
+    "two_spheres": {"radii": [2.0, -2.6]},
     "ellipsoid": {"radius": 2.0, "height": 1.0},
     "hyperboloid": {"slope": 0.4, "tip_radius": 1.3},
     "rounded_punch": {"flat_radius": 0.5, "rounding_radius": 2.0},

@@ -31,6 +31,7 @@ EACH_KIND: list[Profile] = [
     mdr.Power(0.5, 3.5),
     mdr.Series((mdr.PowerTerm(0.3, 1.0), mdr.PowerTerm(0.5, 4.0))),
     mdr.Sphere(1.5),
+    mdr.TwoSpheres((1.5, -2.0)),
     mdr.Ellipsoid(1.5, 0.7),
     mdr.Hyperboloid(0.6, 0.4),
     mdr.RoundedPunch(0.4, 0.8),

@@ -83,6 +83,7 @@ def test_impact_conserves_energy_and_rebounds_as_measured() -> None:
 @pytest.mark.parametrize("kind", mdr.KINDS)
 def test_completion_of_a_profile_offers_what_a_user_needs(kind: str) -> None:
     names = {"radius": 1.0, "tip_radius": 2.0, "terms": (mdr.PowerTerm(1.0, 2.0),)}
+    names |= {"radii": (1.0, -2.0)}
     names |= {"r": [0.0, 1.0, 2.0], "f": [0.0, 1.0, 4.0]}
     cls = mdr.KINDS[kind]
     needed = inspect.signature(cls).parameters.values()
@@ -120,11 +121,11 @@ def test_material_stands_for_its_moduli() -> None:
 
 
 def test_warnings_are_those_of_the_given_bodies() -> None:
-    """Equal bodies have no radial displacement: 0.18 t + t^2 > 0.01 for steel on rigid alone."""
+    """A power r^2 has 0.63 |beta| t + t^2 > 0.01 with one elastic body alone."""
 
     def codes(material: mdr.Material | float) -> list[str]:
         g_star = material if isinstance(material, mdr.Material) else PAIR
-        contact = mdr.normal.solve(mdr.Paraboloid(1.0), material, indentation_depth=0.06**2)
+        contact = mdr.normal.solve(mdr.Power(0.5, 2.0), material, indentation_depth=0.06**2)
         partial = mdr.tangential.solve(contact, g_star, 0.3, tangential_displacement=0.0)
         worn = mdr.wear.limit.solve(contact, g_star, 0.3, tangential_force=0.0)
         found = {notice.code for result in (contact, partial, worn) for notice in result.warnings}

@@ -40,6 +40,7 @@ PROFILES: list[dict[str, Any]] = [
         "terms": [{"coefficient": 0.4, "exponent": 2.0}, {"coefficient": 0.1, "exponent": 3.7}],
     },
     {"kind": "hyperboloid", "slope": 0.4, "tip_radius": 0.01},
+    {"kind": "two_spheres", "radii": [1.2, -1.3]},
     {"kind": "rounded_punch", "flat_radius": 0.5, "rounding_radius": 2.0},
     {"kind": "truncated_cone", "flat_radius": 0.5, "slope": 0.3},
     {"kind": "truncated_paraboloid", "flat_radius": 0.9999, "radius": 2.0},

@@ -32,7 +32,7 @@ def profile(random: Random, kind: str | None = None) -> Case:
 _KINDS: Final = (
     *("flat_punch", "cone", "paraboloid", "sphere", "ellipsoid", "power", "series"),
     *("rounded_punch", "truncated_cone", "truncated_paraboloid", "rounded_cone"),
-    *("spherical_tip_cone", "hyperboloid", "capped_paraboloid"),
+    *("spherical_tip_cone", "hyperboloid", "capped_paraboloid", "two_spheres"),
 )
 
 
@@ -84,6 +84,17 @@ def _analytical(random: Random, kind: str, size: float) -> Case:
             near_tip,
         ),
     }
+    if kind == "two_spheres":
+        other = random.choice(
+            (R, R * spread(random, 1.0, 1e3), -R * (1 + spread(random, 1e-3, 1.0)))
+        )
+        radii = [R, other]
+
+        def gap(r: float) -> float:
+            sides = (abs(each) - sqrt(max(each * each - r * r, 0.0)) for each in radii)
+            return sum(side if each > 0 else -side for side, each in zip(sides, radii, strict=True))
+
+        return Case({"kind": kind, "radii": radii}, gap, a)
     if kind in named:
         fields, height, radius = named[kind]
         return Case({"kind": kind, **fields}, height, radius)

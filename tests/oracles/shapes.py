@@ -146,6 +146,33 @@ class Ellipsoid(Shape):
         return self.radius * mp.tanh(mp.exp(w)), None
 
 
+class TwoSpheres(Shape):
+    """Sum of the spheres of both radii, less the sphere of a socket."""
+
+    def __init__(self, radii: Sequence[mpf]) -> None:
+        super().__init__()
+        self.parts = [(mp.sign(radius), Ellipsoid(abs(radius), abs(radius))) for radius in radii]
+        self.limit = min(abs(radius) for radius in radii)
+
+    def f(self, r: mpf) -> mpf:
+        return mp.fsum(sign * part.f(r) for sign, part in self.parts)
+
+    def df(self, r: mpf) -> mpf:
+        return mp.fsum(sign * part.df(r) for sign, part in self.parts)
+
+    def outer_g(self, x: mpf, s: mpf) -> mpf:
+        return mp.fsum(sign * part.outer_g(x, s) for sign, part in self.parts)
+
+    def outer_dg(self, x: mpf, s: mpf) -> mpf:
+        return mp.fsum(sign * part.outer_dg(x, s) for sign, part in self.parts)
+
+    def outer_force(self, a: mpf, s: mpf) -> mpf:
+        return mp.fsum(sign * part.outer_force(a, s) for sign, part in self.parts)
+
+    def radius_of(self, w: mpf) -> tuple[mpf, mpf | None]:
+        return self.limit * mp.tanh(mp.exp(w)), None
+
+
 class RoundedPunch(Shape):
     """Flat up to b, then (r - b)^2/(2R): Eqs. (5.55)-(5.61)."""
 
@@ -365,6 +392,7 @@ _MAKERS: dict[str, Callable[[Mapping[str, Any]], Shape]] = {
     "cone": lambda p: Monomials([(_field(p, "slope"), mpf(1))]),
     "paraboloid": lambda p: Monomials([(1 / (2 * _field(p, "radius")), mpf(2))]),
     "sphere": lambda p: Ellipsoid(_field(p, "radius"), _field(p, "radius")),
+    "two_spheres": lambda p: TwoSpheres([mpf(radius) for radius in p["radii"]]),
     "ellipsoid": lambda p: Ellipsoid(_field(p, "radius"), _field(p, "height")),
     "power": lambda p: Monomials([(_field(p, "coefficient"), _field(p, "exponent"))]),
     "series": _series,

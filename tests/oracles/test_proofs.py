@@ -38,11 +38,19 @@ CHOSEN = (
 )  # fmt: skip
 
 
+#: A kind without a bank: a ball on a larger one, and in a socket.
+SPHERES: dict[str, Profile] = {
+    "two-spheres": {"kind": "two_spheres", "radii": [1.0, 3.0]},
+    "ball-in-socket": {"kind": "two_spheres", "radii": [1.0, -1.03]},
+}
+
+
 def chosen_profiles() -> dict[str, Profile]:
-    return {family.name: family.make(1.0) for family in FAMILIES if family.name in CHOSEN}
+    return {family.name: family.make(1.0) for family in FAMILIES if family.name in CHOSEN} | SPHERES
 
 
 PROFILES = chosen_profiles()
+CHOSEN = (*CHOSEN, *SPHERES)
 
 
 def points(shape: Shape) -> Iterator[mpf]:

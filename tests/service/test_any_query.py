@@ -51,8 +51,13 @@ PARAMETERS = {
 
 @st.composite
 def simple(draw: st.DrawFn) -> dict[str, object]:
-    kind = draw(st.sampled_from(list(PARAMETERS)))
+    kind = draw(st.sampled_from([*PARAMETERS, "two_spheres"]))
     numbers = draw(st.sampled_from([ORDINARY, LENGTHS]))
+    if kind == "two_spheres":
+        return {
+            "kind": kind,
+            "radii": [draw(numbers), draw(st.sampled_from([-1, 1])) * draw(numbers)],
+        }
     return {"kind": kind} | {
         name: draw(SLOPES if name == "slope" else numbers) for name in PARAMETERS[kind]
     }

@@ -36,7 +36,7 @@ EVERY_EXAMPLE = pytest.mark.parametrize(
 )
 BALL = EXAMPLES["normal"]["hertz"]["value"]
 WITHOUT_ROWS = {
-    *("method", "error_estimate", "field_error_estimate", "warnings"),
+    *("method", "sources", "error_estimate", "field_error_estimate", "warnings"),
     *("slip_fronts", "energy_per_cycle", "secant_stiffness", "final_state"),
 }
 SVG = "{http://www.w3.org/2000/svg}"

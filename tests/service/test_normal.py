@@ -82,9 +82,10 @@ def test_catalogue_lists_every_kind_with_its_fields(client: Client) -> None:
     for name, kind in listed.items():
         assert kind["formula"]
         required = {field["name"] for field in kind["fields"] if field["required"]}
-        assert required == set(PROFILES[name][0]) - {"uncertainty"}
-    (slope,) = listed["cone"]["fields"]
-    assert slope["dimension"] == "1"
+        # A slope may be given by an angle.
+        assert required == set(PROFILES[name][0]) - {"uncertainty", "slope"}
+    slope, angle = listed["cone"]["fields"]
+    assert (slope["dimension"], angle["dimension"]) == ("1", "degree")
     assert "normal_force" in listed["cone"]["closed_forms"]
 
 

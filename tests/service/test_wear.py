@@ -92,7 +92,7 @@ def test_radius_next_to_the_stick_edge_is_in_the_estimate(client: Client) -> Non
     c = client.post(LIMIT, body | {"points": 9}).json()["stick_radius"][0]
     for gap, expected in ((1e-2, set()), (1e-8, {"accuracy"})):
         document = client.post(LIMIT, body | {"radius": [c * (1 - gap)]}).json()
-        assert codes(document) == expected
+        assert codes(document) - {"half_space"} == expected
         # c has an error of a few units in the last place, the pressure the root of its distance.
         assert document["error_estimate"] < 1e-11 + 1e-14 / gap
 

@@ -126,7 +126,7 @@ def test_wrong_number_or_length_gets_a_pointer(
 def test_missing_control_is_named(client: Client, load: dict[str, float]) -> None:
     response = client.post_text("/v1/normal", changed("normal", {"load": load}))
     (error,) = response.json()["errors"]
-    controls = "indentation_depth, normal_force, contact_radius"
+    controls = "indentation_depth, normal_force, contact_radius, maximum_pressure"
     assert error["detail"] == f"exactly one of {controls} is needed"
 
 

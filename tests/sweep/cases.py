@@ -30,7 +30,7 @@ PARAMETERS = {
     "hyperboloid": {"slope": (-3, 1), "tip_radius": (-4, 0)},
     "capped_paraboloid": {"cap_radius": (-5, -2), "tip_radius": (-1, 1), "radius": (-3, -1)},
 }
-KINDS = (*PARAMETERS, "series", "tabulated")
+KINDS = (*PARAMETERS, "series", "two_spheres", "tabulated")
 
 
 def random_cases(kind: str, query: str, count: int, seed: int = 0) -> list[Row]:
@@ -78,6 +78,10 @@ def _profile(random: Random, kind: str) -> Row:
             for i, exponent in enumerate(terms)
             for name, value in (("coefficient", _power(random, -1, 2)), ("exponent", exponent))
         }
+    if kind == "two_spheres":
+        ball = _power(random, -3, 0)
+        socket = -ball * (1 + _power(random, -3, 0))
+        return {"profile.radii.0": ball, "profile.radii.1": random.choice([ball, socket])}
     if kind == "tabulated":
         step, scale = _power(random, -5, -3), _power(random, -2, 1)
         return {

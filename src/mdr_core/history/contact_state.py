@@ -283,7 +283,7 @@ def advance(
     require_finite(("tangential_displacement",), number(displacement))
     profile, largest = state.profile, state.profile.largest_loads
     if largest is not None:
-        require_inside(("indentation_depth",), number(depth) > largest[0], profile.domain)
+        require_inside(("indentation_depth",), number(depth) > largest[0], profile)
     line, kept = slip_memory.moved(state.polyline, depth, displacement / state.displacement_ratio)
     moduli = state.e_star, state.g_star, state.friction_coefficient
     following = ContactState(profile, *moduli, line, before=state.polyline)

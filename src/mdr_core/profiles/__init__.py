@@ -1,9 +1,10 @@
-"""Fifteen kinds of profile, each with its closed forms."""
+"""Sixteen kinds of profile, each with its closed forms."""
 
 from typing import Final
 
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.capped_paraboloid import CappedParaboloid
+from mdr_core.profiles.flanked import slope_of_half_angle
 from mdr_core.profiles.flat_punch import FlatPunch
 from mdr_core.profiles.hyperboloid import Hyperboloid
 from mdr_core.profiles.powers import Cone, Paraboloid, Power
@@ -13,12 +14,14 @@ from mdr_core.profiles.spheroids import Ellipsoid, Sphere
 from mdr_core.profiles.tabulated import Tabulated
 from mdr_core.profiles.tipped import RoundedCone
 from mdr_core.profiles.truncated import RoundedPunch, TruncatedCone, TruncatedParaboloid
+from mdr_core.profiles.two_spheres import TwoSpheres
 
 _CLASSES: Final[tuple[type[Profile], ...]] = (
     FlatPunch,
     Cone,
     Paraboloid,
     Sphere,
+    TwoSpheres,
     Ellipsoid,
     Power,
     Series,
@@ -52,4 +55,6 @@ __all__ = [
     "Tabulated",
     "TruncatedCone",
     "TruncatedParaboloid",
+    "TwoSpheres",
+    "slope_of_half_angle",
 ]

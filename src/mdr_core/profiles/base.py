@@ -160,6 +160,16 @@ class Profile(ABC):
         return inf
 
     @property
+    def end(self) -> tuple[str, str]:
+        """Words for the end of the domain in an error: the reason, and what to do."""
+        return "where the profile ends or ceases to be admissible", "extend a table"
+
+    @property
+    def body_radii(self) -> tuple[Parameter, Parameter] | None:
+        """Radii of two round bodies, infinite if flat and negative if concave; else None."""
+        return None
+
+    @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         """Radii at which the pressure of every contact that contains them is infinite [length].
 
@@ -291,14 +301,14 @@ class Profile(ABC):
         """Inverse of `depth`, iterated where it has no closed form."""
         if self.largest_loads is not None:
             beyond = depth > self.largest_loads[0]
-            require_inside(("load", "indentation_depth"), beyond, self.domain)
+            require_inside(("load", "indentation_depth"), beyond, self)
         return self._root(self.depth, self.depth_slope, depth)
 
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
         """Inverse of `reduced_force`, iterated where it has no closed form."""
         if self.largest_loads is not None:
             beyond = reduced_force > self.largest_loads[1]
-            require_inside(("load", "normal_force"), beyond, self.domain)
+            require_inside(("load", "normal_force"), beyond, self)
         return self._root(self.reduced_force, self.force_slope, reduced_force)
 
     def _root(self, load: Function, slope: Function, target: Array) -> Array:

@@ -2,13 +2,19 @@
 
 from abc import abstractmethod
 from collections.abc import Callable
-from math import pi
+from math import pi, radians, tan
 
 import numpy as np
 
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.typing import Array, Parameter
+
+
+def slope_of_half_angle(half_angle: float) -> float:
+    """Return the slope tan(90 - half_angle) [1] of a flank at this angle to the axis [degree]."""
+    # Either tangent is that of an angle without a rounding error of its own.
+    return tan(radians(90 - half_angle)) if half_angle > 45 else 1 / tan(radians(half_angle))
 
 
 class Flanked(Profile):

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import partial
-from math import pi
+from math import inf, pi
 from typing import ClassVar
 
 import numpy as np
@@ -144,6 +144,10 @@ class Paraboloid(Profile):
     closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, *FIELDS)
     # Source: mdr-5, Eqs. (5.12), (5.16).
     stick_ratios: ClassVar[StickRatios] = (square_stick, cubic_stick)
+
+    @property
+    def body_radii(self) -> tuple[Parameter, Parameter]:
+        return self.radius, inf
 
     def f(self, radius: Array) -> Array:
         return radius * radius / (2 * self.radius)

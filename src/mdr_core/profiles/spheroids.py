@@ -1,7 +1,7 @@
 """Spheroids: sphere and ellipsoid."""
 
 from dataclasses import dataclass
-from math import pi
+from math import inf, pi
 from typing import ClassVar, Final
 
 import numpy as np
@@ -160,6 +160,10 @@ class Sphere(Spheroid):
     @property
     def height(self) -> Parameter:  # type: ignore[override]  # a field of the ellipsoid
         return self.radius
+
+    @property
+    def body_radii(self) -> tuple[Parameter, Parameter]:
+        return self.radius, inf
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from mdr_core.doubles import TINY
 from mdr_core.elementwise import number
 from mdr_core.errors import AccuracyError, DefectError, InputError
 from mdr_core.fields import graded
+from mdr_core.half_space import ASSUMED_RATIO
 from mdr_core.history import LoadHistory
 from mdr_core.inversion import MAX_STEPS
 from mdr_core.profiles import Cone, Paraboloid, Power, Profile
@@ -24,7 +25,7 @@ from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.subsurface.stress import MOMENT_ERROR, on_rings
 from mdr_core.typing import Array, Indices
 from mdr_core.validation import require_poissons_ratio, require_single_positive, require_type
-from mdr_core.validity import ASSUMED_RATIO, Finding, infinite_deviator
+from mdr_core.validity import Finding, infinite_deviator
 
 # Radii, and depths per e-fold, of a grid. The radii cluster at the axis, the edges and the breaks;
 # the depths lie between these parts of the contact radius.

@@ -265,7 +265,7 @@ function keyOf(pointer) {
   if (member) return SOURCES[member];
   const [, , name, index, part] = pointer.split("/");
   if (pointer === "/profile" && inputs.kind === "tabulated") return "table";
-  if (inputs.kind === "balls" && name === "radius") return inputs.radius_1 > 0 ? "radius_2" : "radius_1";
+  if (name === "radii") return index === "0" ? "radius_1" : "radius_2";
   if (name === "breaks") return name;
   return name === "terms" ? `${part}_${Number(index) + 1}` : pointer.split("/").pop();
 }

@@ -8,7 +8,10 @@ const kind = (label, fields, f) => ({ label, fields, f });
 const cap = (r, radius) => radius - Math.sqrt(radius ** 2 - r * r);
 
 export const KINDS = {
-  balls: kind("Two balls", { radius_1: 0.01, radius_2: 0.02 }),
+  two_spheres: kind(
+    "Two balls, or ball in socket", { radius_1: 0.01, radius_2: 0.02 },
+    (r, p) => p.radii.reduce((sum, radius) => sum + Math.sign(radius) * cap(r, Math.abs(radius)), 0),
+  ),
   paraboloid: kind("Paraboloid (ball)", { radius: 0.01 }, (r, p) => (r * r) / (2 * p.radius)),
   sphere: kind("Sphere, exact", { radius: 0.01 }, (r, p) => cap(r, p.radius)),
   ellipsoid: kind(
@@ -54,9 +57,9 @@ export const KINDS = {
 
 // Fields in place of those of the wire.
 export const OWN_FIELDS = {
-  balls: [
+  two_spheres: [
     { name: "radius_1", dimension: "length", description: "Radius of the first ball" },
-    { name: "radius_2", dimension: "length", description: "Radius of the second ball" },
+    { name: "radius_2", dimension: "length", description: "Radius of the second ball, < 0 for a socket" },
   ],
   tabulated: [
     { name: "uncertainty", dimension: "displacement", description: "Uncertainty of the heights", optional: true, placeholder: "by scatter" },
@@ -69,7 +72,6 @@ export const OWN_FIELDS = {
 };
 
 export const OWN_FORMULAS = {
-  balls: "r²/2R with 1/R = 1/R₁ + 1/R₂",
   series: "c₁·r^n₁ + c₂·r^n₂",
 };
 
@@ -101,10 +103,7 @@ export function inMetres({ r, f, units }) {
 /** Return the profile as the wire has it. */
 export function wireProfile(inputs) {
   const { kind } = inputs;
-  if (kind === "balls") {
-    const radius = 1 / (1 / inputs.radius_1 + 1 / inputs.radius_2);
-    return { kind: "paraboloid", radius: Number(radius.toPrecision(15)) };
-  }
+  if (kind === "two_spheres") return { kind, radii: [inputs.radius_1, inputs.radius_2] };
   if (kind === "series") {
     const term = (i) => ({ coefficient: inputs[`coefficient_${i}`], exponent: inputs[`exponent_${i}`] });
     return { kind, terms: [term(1), term(2)] };

@@ -22,6 +22,7 @@ from mdr_core.results import Results
 from mdr_core.tangential import TangentialContact
 from mdr_core.torsion import TorsionalContact
 from mdr_core.typing import Array, Flags
+from mdr_core.validity import MODEL_ERRORS, sources_of
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import LoadedQuery
 from mdr_service.schemas.profiles import Profile
@@ -45,6 +46,9 @@ def solve_normal(query: NormalQuery | LoadedQuery | WearQuery | TorsionQuery) ->
     """
     arguments = body(query) | control(query.load)
     given = query.material.model_dump(include=ADHESION, exclude_unset=True)
+    if given and "maximum_pressure" in arguments:
+        detail = "is undetermined with adhesion, under tension at the edge: give another load"
+        raise InputError(("load", "maximum_pressure"), detail)
     solve: Any = adhesion.solve if given else normal_contact.solve
     contact: NormalContact = solve(**arguments, **given)
     return contact
@@ -62,9 +66,13 @@ def solve_tangential(query: TangentialQuery | LoadedQuery) -> TangentialContact:
 
 def profile(model: Profile) -> profiles.Profile:
     """Return the profile; fields have the same names in the model and in the core."""
-    given: Arguments = {name: value for name, value in vars(model).items() if name != "kind"}
-    if model.kind == "tabulated":
-        given = {name: tuple(v) if isinstance(v, list) else v for name, v in given.items()}
+    given: Arguments = {
+        name: tuple(value) if isinstance(value, list) else value
+        for name, value in vars(model).items()
+        if name != "kind"
+    }
+    if (half_angle := given.pop("half_angle", None)) is not None:
+        given["slope"] = profiles.slope_of_half_angle(half_angle)
     if model.kind == "series":
         given["terms"] = tuple(profiles.PowerTerm(**vars(term)) for term in model.terms)
     return _by_parameters(model.kind, **given)
@@ -213,15 +221,25 @@ def response(
         found = [notice for notice in found if notice.code != "accuracy"]
         if error > ACCURACY:
             found.append(inaccurate(error))
-    known = np.ravel(source.model_error)
     about = {
         "method": method or source.method,
+        "sources": [*dict.fromkeys((*source.sources, *sources_of(*values, *(unchecked or ()))))],
         "error_estimate": error,
-        # Fields at the end of a history have the error of its last sample.
-        "model_error": known[-1:] if query.loads == 1 else np.full(query.loads, known),
+        **model_errors(source, query.loads),
         "warnings": [vars(notice) for notice in found],
     }
     return checked(query, values, infinite) | (unchecked or {}) | about
+
+
+def model_errors(source: Any, loads: int = 1) -> Result:
+    """Return the estimates of the error of the model that there are, over the loads."""
+    known = {name: np.ravel(getattr(source, name)) for name in MODEL_ERRORS}
+    return {
+        # Fields at the end of a history have the error of its last sample.
+        name: error[-1:] if loads == 1 else np.full(loads, error)
+        for name, error in known.items()
+        if error[0] is not None
+    }
 
 
 def yields(query: Query, source: Any) -> list[validity.Finding]:

@@ -5,7 +5,7 @@ import numpy as np
 from mdr_core import fit
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
-from mdr_service.queries.contacts import ADHESION, Result, checked, profile
+from mdr_service.queries.contacts import ADHESION, Result, checked, model_errors, profile
 from mdr_service.schemas.contacts import as_body
 from mdr_service.schemas.fits import FitQuery
 
@@ -50,7 +50,8 @@ def fit_result(query: FitQuery, source: Fit) -> Result:
         "fit": query.fit,
         **checked(query, values),
         "method": source.method,
+        "sources": [*source.sources],
         "error_estimate": source.error_estimate,
-        "model_error": np.atleast_1d(source.model_error),
+        **model_errors(source),
         "warnings": [vars(notice) for notice in source.warnings if notice.code != "singular"],
     }

@@ -25,6 +25,7 @@ _Regime = Annotated[
     Field(description="Slip regime: `stick`, `partial_slip` or `full_slip`."),
 ]
 _NULL = "null where infinite, with a warning `singular`"
+_ROUND = "under a given force by the model, of spheres and paraboloids"
 _UNBOUNDED = "null if wear is unbounded"
 _of_pressure = partial(
     quantity,
@@ -58,6 +59,9 @@ class SolvedAnswer(Answer):
         description="Most expensive method among the results: `closed_form`, `quadrature` "
         "(numerical integration) or `piecewise_moments` (sums over the pieces of a table)."
     )
+    sources: list[str] = Field(
+        description="Keys of the manual's list of sources, with equations, behind the results."
+    )
     error_estimate: float = _number(
         "Bound on the numerical error: of scalars relative to their values, of fields, histories "
         "and stresses to the largest value; for wear over the cycles an estimate"
@@ -65,6 +69,12 @@ class SolvedAnswer(Answer):
     model_error: list[float] = _number(
         "Estimate, no bound, of the relative error of depth, force and displacements by the model: "
         "half-space, coupling and transverse slip; 1 for 100 % and more; by load or sample"
+    )
+    model_error_radius: list[float] = _number(
+        f"Estimated error of the radius {_ROUND}", default=None
+    )
+    model_error_pressure: list[float] = _number(
+        f"Estimated error of the pressure {_ROUND}", default=None
     )
     warnings: list[AnswerWarning] = Field(description="Warnings, each with a stable code.")
 

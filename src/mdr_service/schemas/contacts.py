@@ -12,6 +12,7 @@ from mdr_service.schemas.quantities import (
     ScalarOrArray,
     SignedScalarOrArray,
     Strict,
+    left_out,
     positive,
     quantity,
 )
@@ -78,6 +79,11 @@ class Load(Choice):
         "force", "Normal force F_N, with adhesion down to the pull-off", default=None
     )
     contact_radius: ScalarOrArray = quantity("length", "Contact radius a", default=None)
+    maximum_pressure: ScalarOrArray = quantity(
+        "pressure",
+        "Largest pressure p(r), of profiles without a sharp tip or edge, no tables, no adhesion",
+        default=None,
+    )
 
 
 class Tangential(Choice):
@@ -111,6 +117,11 @@ class BodyMaterial(Strict):
 
     youngs_modulus: float = positive("pressure", "Young's modulus E")
     poissons_ratio: float = quantity("1", "Poisson's ratio ν", gt=-1, le=0.5)
+    held: materials.Held = left_out(
+        "How a round body is held, on which `model_error` depends: between two "
+        "`contacts` (default), on a `stem` or by its equator, `free`, or as a bump of a `block`. "
+        "Impacts take `free`"
+    )
 
 
 # As an enumeration, because a generator of clients takes no constant in a choice.
@@ -123,7 +134,9 @@ BodyOrRigid = Annotated[
 
 def as_body(given: BodyMaterial | str) -> materials.Body | Literal["rigid"]:
     """Return a body of the core."""
-    return materials.RIGID if isinstance(given, str) else materials.Body(**vars(given))
+    if isinstance(given, str):
+        return materials.RIGID
+    return materials.Body(**given.model_dump(exclude_unset=True))
 
 
 def thickness() -> Any:
@@ -131,8 +144,7 @@ def thickness() -> Any:
     return positive(
         "length",
         "Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the "
-        "warning `thin_body`; half-spaces remain the model of the contact. Without it a `sphere` "
-        "counts as a ball of the thickness 2 `radius`, and other profiles as half-spaces",
+        "warning `thin_body`; half-spaces remain the model of the contact",
         default=None,
     )
 
@@ -274,7 +286,7 @@ class Query(Strict):
 class NormalQuery(Query):
     """Profile pressed into an elastic half-space without friction."""
 
-    load: Load = Field(description="Exactly one control: depth, force or contact radius.")
+    load: Load = Field(description="Exactly one control, such as the depth or the force.")
 
 
 def friction(**field: Any) -> Any:

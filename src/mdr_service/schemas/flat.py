@@ -27,9 +27,13 @@ def leaves(
         yield from leaves(root, described, name)
     for member, child in node.get("properties", {}).items():
         yield from leaves(root, child, f"{name}.{member}" if name else member)
-    if node.get("type") == "array" and node["items"].get("type") not in {"number", "string"}:
+    is_pair = "minItems" in node and node["minItems"] == node.get("maxItems")
+    if node.get("type") == "array" and (
+        is_pair or node["items"].get("type") not in {"number", "string"}
+    ):
         # `#` stands for any index.
-        yield from leaves(root, node["items"], f"{name}.#")
+        described = {"description": node.get("description", "")} | node["items"]
+        yield from leaves(root, described, f"{name}.#")
     elif node.get("type") in {"array", "number", "integer", "string"}:
         yield name, node
 

@@ -1,11 +1,12 @@
 """Profiles by ``kind``; fields have the names of the parameters of the core."""
 
 from collections.abc import Mapping
-from typing import Annotated, Final, Literal, get_args
+from typing import Annotated, Final, Literal, Self, get_args
 
-from pydantic import Field
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
-from mdr_service.schemas.quantities import Signed, Size, Strict, positive, quantity
+from mdr_service.schemas.quantities import Signed, Size, Strict, one_of, positive, quantity
 from mdr_service.settings import SETTINGS
 
 _COEFFICIENT = "length^(1-exponent)"
@@ -20,19 +21,35 @@ class FlatPunchProfile(Strict):
     radius: float = positive("length", "Radius of the flat face")
 
 
-class ConeProfile(Strict):
+class _Flanked(Strict, json_schema_extra=one_of("slope", "half_angle")):
+    """Profile with a flank, given by its slope or its angle."""
+
+    slope: float = positive(
+        "1", "Slope t of the flank, tan θ against the plane", low=1e-15, high=1e6, default=None
+    )
+    half_angle: float = quantity(
+        "degree",
+        "Angle between the axis and the flank, in place of the slope tan(90° − half_angle)",
+        ge=1e-4,
+        le=89.9999,
+        default=None,
+    )
+
+    @model_validator(mode="after")
+    def _slope_or_angle(self) -> Self:
+        if self.has("slope") == self.has("half_angle"):
+            raise PydanticCustomError("one_slope", "exactly one of slope, half_angle is needed")
+        return self
+
+
+class ConeProfile(_Flanked):
     """A cone: slope·r."""
 
     kind: Literal["cone"]
-    slope: float = positive("1", "Slope of the flank, tan θ against the plane", low=1e-15, high=1e6)
 
 
 class ParaboloidProfile(Strict):
-    """A paraboloid, the shape of Hertz: r²/(2·radius).
-
-    Two spheres, or a sphere in a socket, are one with 1/radius = 1/R₁ + 1/R₂, where R < 0 for a
-    concave surface.
-    """
+    """A paraboloid, the shape of Hertz: r²/(2·radius)."""
 
     kind: Literal["paraboloid"]
     radius: float = positive("length", "Radius of curvature at the tip")
@@ -43,6 +60,18 @@ class SphereProfile(Strict):
 
     kind: Literal["sphere"]
     radius: float = positive("length", "Radius of the sphere")
+
+
+class TwoSpheresProfile(Strict):
+    """The exact gap of two spheres, or of a ball in a socket, whose radius is negative."""
+
+    kind: Literal["two_spheres"]
+    radii: list[Signed] = quantity(
+        "length",
+        "Radii R₁ of the first body and R₂ of the second, of a socket negative; 1/R₁ + 1/R₂ > 0",
+        min_length=2,
+        max_length=2,
+    )
 
 
 class EllipsoidProfile(Strict):
@@ -88,12 +117,11 @@ class RoundedPunchProfile(Strict):
     rounding_radius: float = positive("length", "Radius R of the rounding")
 
 
-class TruncatedConeProfile(Strict):
+class TruncatedConeProfile(_Flanked):
     """A cone with a flat tip: 0, then slope·(r − flat_radius)."""
 
     kind: Literal["truncated_cone"]
     flat_radius: float = positive("length", "Radius b of the flat face")
-    slope: float = positive("1", "Slope of the flank", low=1e-15, high=1e6)
 
 
 class TruncatedParaboloidProfile(Strict):
@@ -104,27 +132,24 @@ class TruncatedParaboloidProfile(Strict):
     radius: float = positive("length", "Radius of curvature of the paraboloid")
 
 
-class RoundedConeProfile(Strict):
+class RoundedConeProfile(_Flanked):
     """A cone with a parabolic tip: r²/(2·tip_radius), then the tangent cone."""
 
     kind: Literal["rounded_cone"]
-    slope: float = positive("1", "Slope of the flank", low=1e-15, high=1e6)
     tip_radius: float = positive("length", "Radius of curvature at the tip")
 
 
-class SphericalTipConeProfile(Strict):
+class SphericalTipConeProfile(_Flanked):
     """A cone with an exact spherical tip up to the tangent point, then the cone."""
 
     kind: Literal["spherical_tip_cone"]
-    slope: float = positive("1", "Slope of the flank", low=1e-15, high=1e6)
     tip_radius: float = positive("length", "Radius of the spherical tip")
 
 
-class HyperboloidProfile(Strict):
+class HyperboloidProfile(_Flanked):
     """A hyperboloid: R·t²·(√(1 + r²/(R·t)²) − 1), t the slope of its asymptote."""
 
     kind: Literal["hyperboloid"]
-    slope: float = positive("1", "Slope t of the asymptote", low=1e-15, high=1e6)
     tip_radius: float = positive("length", "Radius of curvature R at the tip")
 
 
@@ -176,6 +201,7 @@ Profile = Annotated[
     | ConeProfile
     | ParaboloidProfile
     | SphereProfile
+    | TwoSpheresProfile
     | EllipsoidProfile
     | PowerProfile
     | SeriesProfile
@@ -198,6 +224,9 @@ MODELS: Final[Mapping[str, type[Strict]]] = {
 OF_NUMBERS: Final = tuple(
     kind
     for kind, model in MODELS.items()
-    if {field.annotation for name, field in model.model_fields.items() if name != "kind"} == {float}
+    if all(
+        field.annotation is float or name in {"kind", "radii"}
+        for name, field in model.model_fields.items()
+    )
 )
 """Kinds that consist of numbers."""

@@ -16,7 +16,7 @@ PLAIN_TEXT: Final = "text/plain"
 _WARNINGS: Final = "warnings"
 # Lists over the cycles of a history or at its end: these have no row.
 _NOT_IN_ROWS: Final = frozenset(
-    {_WARNINGS, "slip_fronts", "energy_per_cycle", "secant_stiffness", "correlation"}
+    {_WARNINGS, "sources", "slip_fronts", "energy_per_cycle", "secant_stiffness", "correlation"}
 )
 # Given over the radius only, and repeated for each load.
 _BY_RADIUS: Final = frozenset({"initial_profile"})

@@ -1,0 +1,174 @@
+"""Estimated errors of the half-space approximation: bodies of finite size, slopes, side walls.
+
+Source: hay; dimitriadis; notes, §8.
+"""
+
+from typing import Final, NamedTuple, Protocol
+
+import numpy as np
+
+from mdr_core.elementwise import every, full, some, where
+from mdr_core.materials import Material
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array, Flags, Parameter
+
+# Relative error by the neglected radial displacement, over |beta| and the slope of a cone. Source:
+# hay, by F/F_Sneddon to first order; a paraboloid has three quarters.
+_RADIAL: Final = 0.63
+ASSUMED_RATIO: Final = 0.3
+"""Poisson's ratio of most metals, assumed where the bodies are unknown, and Dundurs' beta."""
+_ASSUMED_BETA: Final = (1 - 2 * ASSUMED_RATIO) / (2 * (1 - ASSUMED_RATIO))
+# The same of a paraboloid, 3/(2 pi). Source: notes, §8.
+_RADIAL_ROUND: Final = 0.477
+# Compliance that a half-space lacks, over its own 0.46/(E b): that of a cylinder of radius b and
+# length 6 b is L/(pi E b^2).
+_WALL: Final = 3.0
+# Increase of the force at a given depth to first order, over a/R and the share of a body in the
+# compliance, by how the body is held; that of a socket in a block. Source: notes, §8.
+_HELD: Final = {"contacts": 0.6, "stem": 0.85, "free": 1.1, "block": 0.0}
+_SOCKET: Final = 0.6
+
+
+class LoadedContact(Protocol):
+    """Attributes of a normal contact on which its validity depends."""
+
+    @property
+    def profile(self) -> Profile: ...
+    @property
+    def e_star(self) -> Parameter: ...
+    @property
+    def contact_radius(self) -> Array: ...
+    @property
+    def mean_pressure(self) -> Array: ...
+    @property
+    def loaded(self) -> Flags: ...
+    @property
+    def material(self) -> Material | None: ...
+    @property
+    def half_space_errors(self) -> "Errors": ...
+
+
+class Errors(NamedTuple):
+    """Estimated relative errors of each load by the half-space approximation [1]."""
+
+    parts: tuple[Array, ...]
+    """Parts of the error of the force at a given depth, which is larger than that of the depth
+    under a given force: by the finite size of round bodies, by the neglected radial displacement,
+    by the slope, and by the side wall of an elastic punch."""
+    steepness: Array
+    """Slope at the contact edge, or largest a/R of round bodies."""
+    radius: Array | None = None
+    """Error of the contact radius under a given force; None where the bodies are not round."""
+    pressure: Array | None = None
+    """Error of the largest pressure under a given force; None likewise."""
+
+    @property
+    def force(self) -> Array:
+        """Error of the force at a given depth."""
+        size, radial, slope, wall = self.parts
+        return size + radial + slope + wall
+
+
+def errors(contact: LoadedContact, material: Material | None) -> Errors:
+    """Return the estimated errors of a contact; Poisson's ratio 0.3 stands for unknown bodies."""
+    if material is contact.material:
+        return contact.half_space_errors
+    return of_material(contact, material)
+
+
+def of_material(contact: LoadedContact, material: Material | None) -> Errors:
+    """Return the estimated errors of a contact of any material; see `errors`."""
+    known = None if material is None else material.dundurs_beta
+    beta = abs(_ASSUMED_BETA if known is None else known)
+    if contact.profile.body_radii is not None:
+        return _of_round_bodies(contact, material, beta)
+    slope = _edge_slope(contact)
+    wall = _wall_error(contact, None if material is None else material.profile_share)
+    return Errors((0 * slope, _RADIAL * beta * slope, slope * slope, wall + 0 * slope), slope)
+
+
+def _of_round_bodies(contact: LoadedContact, material: Material | None, beta: float) -> Errors:
+    """Errors of two round bodies, of first order in x_i = a/|R_i|, s_i their shares in 1/E*.
+
+    With X = sum k_i s_i x_i, the slope S = |x_1 s_2 +- x_2 s_1| of the common surface (+ in a
+    socket) and m = max(x_1 s_2, x_2 s_1), the force at a given depth has the relative error
+    X + X^2 + 3/(2 pi) |beta| S + 0.1 S^2, the contact radius under a given force
+    0.015 sum s_i x_i + 0.1 |beta| m + 0.05 max x_i^2, and the largest pressure
+    0.04 sum s_i x_i + 0.3 |beta| m + 0.4 S^2. Source: notes, §8.
+    """
+    bodies = material or Material(1.0)
+    radii = contact.profile.body_radii or ()
+    x1, x2 = (contact.contact_radius / np.abs(radius) for radius in radii)
+    k1, k2 = (
+        max(_HELD[held], _SOCKET * is_concave(radius))
+        for held, radius in zip(bodies.held, radii, strict=True)
+    )
+    sign = 1 if any(map(is_concave, radii)) else -1
+    found = []
+    # Either of two unknown bodies may be the elastic one.
+    for s1 in (1.0, 0.0) if bodies.profile_share is None else (bodies.profile_share,):
+        s2 = 1 - s1
+        size, mean = k1 * s1 * x1 + k2 * s2 * x2, s1 * x1 + s2 * x2
+        largest, steepest = np.maximum(x1 * s2, x2 * s1), np.maximum(x1, x2)
+        common = abs(x1 * s2 + sign * x2 * s1)
+        force = size + size**2, _RADIAL_ROUND * beta * common, 0.1 * common**2, 0.0 * size
+        radius = 0.015 * mean + 0.1 * beta * largest + 0.05 * steepest**2
+        pressure = 0.04 * mean + 0.3 * beta * largest + 0.4 * common**2
+        found.append((*force, steepest, radius, pressure))
+    *parts, steepest, radius, pressure = (
+        found[0] if len(found) == 1 else np.maximum(found[0], found[1])
+    )
+    return Errors(tuple(parts), steepest, radius, pressure)
+
+
+def is_concave(radius: Parameter) -> bool:
+    """Return True for the radius of a socket, which is a single number."""
+    return isinstance(radius, float) and radius < 0
+
+
+def layer(contact: LoadedContact, material: Material | None) -> tuple[Array, Array]:
+    """Return a/h of a body of thickness h, bonded to a rigid base, and its relative error [1].
+
+    The base reduces the depth by alpha F_N/(pi E* h), to first order in a/h, with the source's
+    approximation of alpha(nu), and by the share of the more compliant body. The force increases by
+    x + x^2, x = (2/pi) alpha a/h, to the second.
+
+    Source: dimitriadis; notes, §8.
+    """
+    if material is None or material.body_thickness is None:
+        return 0 * contact.contact_radius, 0 * contact.contact_radius
+    part = contact.contact_radius / material.body_thickness
+    nu, first = largest_ratio(material), material.profile_share
+    share = 1.0 if first is None else max(first, 1 - first)
+    x = share * 2 / np.pi * (1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu) * part
+    return part, x + x * x
+
+
+def largest_ratio(material: Material | None) -> float:
+    """Poisson's ratio, the larger one of two bodies, assumed where they are unknown [1]."""
+    return max(() if material is None else material.poissons_ratios, default=ASSUMED_RATIO)
+
+
+def _edge_slope(contact: LoadedContact) -> Array:
+    """f'(a) of loaded contacts, else zero [1]."""
+    a, loaded = contact.contact_radius, contact.loaded
+    if contact.profile.has_no_partial_slip or not some(loaded):
+        return full(0.0, a)
+    # The slope at the tip, where nothing is loaded, may be infinite.
+    inside = a if every(loaded) else np.where(loaded, a, np.max(a))
+    return where(loaded, contact.profile.df(inside), 0.0)
+
+
+def _wall_error(contact: LoadedContact, share: float | None) -> Parameter:
+    """Estimated error by the side wall of an elastic body with a flat end, which carries no stress.
+
+    The flank beyond the contact edge counts as far as it is steeper than at the edge, up to the
+    slope 1, and the body by its `share` in the compliance. [1]
+    """
+    profile, a = contact.profile, contact.contact_radius
+    if not share or not some(contact.loaded & (profile.first_radius > 0)):
+        return 0.0
+    reach = np.minimum(2 * a, profile.domain)
+    flank = (profile.f(reach) - profile.f(a)) / a
+    steeper = np.minimum(np.square(flank), 1.0) - np.square(_edge_slope(contact))
+    return where(contact.loaded, _WALL * share * np.maximum(steeper, 0.0), 0.0)

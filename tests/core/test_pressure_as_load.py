@@ -1,0 +1,80 @@
+"""A prescribed largest pressure gives the contact that has it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mdr_core import normal
+from mdr_core.errors import InputError
+from mdr_core.profiles import (
+    CappedParaboloid,
+    Cone,
+    FlatPunch,
+    Hyperboloid,
+    Paraboloid,
+    Power,
+    Profile,
+    RoundedCone,
+    RoundedPunch,
+    Sphere,
+    Tabulated,
+    TruncatedCone,
+    TwoSpheres,
+)
+
+R = np.linspace(0.0, 1.0, 11)
+FINITE: list[tuple[Profile, list[float]]] = [
+    (Power(0.7, 1.5), [1e-9, 0.3, 2.0]),
+    (Power(0.7, 4.0), [1e-9, 0.3, 2.0]),
+    (Sphere(1.0), [1e-9, 0.5, 0.7, 0.99]),
+    (TwoSpheres((1.0, -1.01)), [1e-9, 0.3, 0.6, 0.84]),
+    (Hyperboloid(0.4, 1.3), [1e-9, 0.5, 30.0]),
+    (RoundedPunch(0.5, 2.0), [0.5001, 0.6, 2.0]),
+    (RoundedCone(0.3, 1.0), [0.1, 0.31, 2.0]),
+    (CappedParaboloid(0.5, 3.0, 1.1), [0.1, 0.45]),
+]
+
+
+@pytest.mark.parametrize(("profile", "radii"), FINITE, ids=lambda each: getattr(each, "kind", ""))
+@pytest.mark.parametrize("scale", [1e-30, 1.0, 1e30])
+def test_pressure_of_a_contact_leads_back_to_it(
+    profile: Profile, radii: list[float], scale: float
+) -> None:
+    known = normal.solve(profile, scale, contact_radius=radii)
+    found = normal.solve(profile, scale, maximum_pressure=known.maximum_pressure)
+    assert found.maximum_pressure.tolist() == known.maximum_pressure.tolist()
+    for name in ("contact_radius", "indentation_depth", "normal_force"):
+        error = np.abs(getattr(found, name) / getattr(known, name) - 1).max()
+        assert error <= found.error_estimate < 1e-10, name
+
+
+def test_hertz() -> None:
+    """F_N = pi^3 R^2 p^3/(6 E*^2), a = pi R p/(2 E*)."""
+    p = np.array([0.0, 1e-9, 0.05])
+    contact = normal.solve(Paraboloid(2.0), 3.0, maximum_pressure=p)
+    assert contact.contact_radius == pytest.approx(np.pi * 2 * p / 6, rel=1e-14, abs=0)
+    assert contact.normal_force == pytest.approx(np.pi**3 * 4 * p**3 / 54, rel=1e-13, abs=0)
+
+
+@pytest.mark.parametrize(
+    ("profile", "pressure", "reason"),
+    [
+        (Cone(0.1), 1.0, "infinite under any load"),
+        (FlatPunch(1.0), 1.0, "infinite under any load"),
+        (TruncatedCone(0.5, 0.1), 1.0, "infinite under any load"),
+        (Power(1.0, 0.8), 1.0, "infinite under any load"),
+        (Tabulated(R, R * R), 0.1, "points of a table"),
+        (CappedParaboloid(0.5, 3.0, 1.1), [0.01, 0.2], "at radius 0.5 it is infinite"),
+        (TwoSpheres((1.0, -1.01)), 1.0, "60 degrees of the ball"),
+        (Sphere(1.0), 1e9, "beyond radius"),
+        (Paraboloid(1.0), -1.0, "must not be negative"),
+        (Paraboloid(1.0), np.inf, "must be finite"),
+    ],
+)
+def test_pressures_that_no_contact_has(profile: Profile, pressure: Any, reason: str) -> None:
+    with pytest.raises(InputError, match=reason) as caught:
+        normal.solve(profile, 1.0, maximum_pressure=pressure)
+    assert caught.value.path[:2] == ("load", "maximum_pressure")
