@@ -87,7 +87,7 @@ class Curve:
         return float(self.profile.domain)
 
     def correction(self, contact: "AdhesiveContact", load: Indices, r: Array) -> Array | float:
-        """Pressure over E* beyond that of a half-space at radii, each under the load of an index."""
+        """Pressure over E* beyond the half-space's at radii, each under the load of an index."""
         return 0.0
 
     def pressed(self, *known: Any) -> NormalContact:
@@ -222,7 +222,10 @@ class AdhesiveContact(NormalContact):
     @cached_property
     def maximum_pressure(self) -> Array:
         """Largest pressure in the contact [pressure]; the tension at its edge is infinite."""
-        a, rim = np.ravel(self.contact_radius), np.ravel(self.retraction / (pi * self.contact_radius))
+        a, rim = (
+            np.ravel(self.contact_radius),
+            np.ravel(self.retraction / (pi * self.contact_radius)),
+        )
 
         def tension(load: Indices, r: Array) -> Array:
             square = np.maximum((a[load] - r) * (a[load] + r), LEAST_GAP * a[load] ** 2)
@@ -265,7 +268,7 @@ class AdhesiveContact(NormalContact):
     @property
     def method(self) -> str:
         """Method: closed forms only under a flat punch."""
-        return "closed_form" if self.profile.has_no_partial_slip else "quadrature"
+        return self.reference.method if self.profile.has_no_partial_slip else "quadrature"
 
     @cached_property
     def edge_errors(self) -> Array:

@@ -149,7 +149,7 @@ def _search(profile: Profile, edge: Array, *slip: Array, added: _Field | None = 
     """The largest stress of contacts with one profile, where it is finite; shape (loads,).
 
     The stress is sampled between its singular radii. Every candidate for the highest peak is then
-    bracketed more and more closely. `added` is a field over loads and radii that is zero on the axis.
+    bracketed more and more closely. `added` is a field that vanishes on the axis.
     """
     c = [profile.contact_radius(part) for part in slip[1:]]
 
