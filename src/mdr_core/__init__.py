@@ -21,6 +21,7 @@ from mdr_core import (
     history,
     hysteresis,
     impact,
+    layer,
     normal,
     subsurface,
     tangential,
@@ -29,7 +30,7 @@ from mdr_core import (
     wear,
 )
 from mdr_core.errors import AccuracyError, DefectError, InputError, MDRError, Notice
-from mdr_core.materials import RIGID, Body, Material, from_bodies
+from mdr_core.materials import RIGID, Body, Layer, Material, from_bodies
 from mdr_core.profiles import (
     KINDS,
     CappedParaboloid,
@@ -66,6 +67,7 @@ __all__ = [
     "FlatPunch",
     "Hyperboloid",
     "InputError",
+    "Layer",
     "MDRError",
     "Material",
     "Notice",
@@ -89,6 +91,7 @@ __all__ = [
     "history",
     "hysteresis",
     "impact",
+    "layer",
     "normal",
     "read_table",
     "subsurface",

@@ -21,9 +21,11 @@ from scipy.optimize import least_squares
 from scipy.special import chdtrc, fdtrc
 
 from mdr_core import adhesion, normal, validity
+from mdr_core import layer as layers
 from mdr_core.doubles import EPS, TINY
 from mdr_core.errors import InputError, Notice
-from mdr_core.materials import Material
+from mdr_core.layer import DepthCurve
+from mdr_core.materials import Layer, Material
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags
@@ -129,6 +131,7 @@ def solve(
     e_star: float | None = None,
     noise: float | None = None,
     body_thickness: float | None = None,
+    layer: Layer | None = None,
 ) -> Fit:
     """Return the parameters of a contact that fit a measured curve best.
 
@@ -146,6 +149,8 @@ def solve(
     e_star : effective modulus, needed unless it is fitted [pressure].
     noise : standard deviation of the forces, by default that of the residuals [force].
     body_thickness : see `from_bodies` [length].
+    layer : elastic layer that is the sample, with its Poisson's ratio on a bonded base; not with
+        adhesion.
 
     Returns
     -------
@@ -181,11 +186,19 @@ def solve(
     if "work_of_adhesion" in fit and profile.has_no_partial_slip:
         detail = "holds work_of_adhesion, on which only the pull-off of a flat punch depends"
         raise InputError(("fit",), detail)
+    if layer is not None and "work_of_adhesion" in fit:
+        raise InputError(("layer",), "cannot be combined with a fitted work_of_adhesion")
+    if layer is not None and body_thickness is not None:
+        raise InputError(("layer",), "and body_thickness exclude each other: give one of them")
     deepest = profile.largest_loads
     if deepest is not None and "contact_point" not in fit and depth.max() > deepest[0]:
         place = ("indentation_depth", int(depth.argmax()))
         raise InputError(place, "lies beyond the end of the profile: give a longer one")
-    model = _Model(profile, depth, force, tuple(fit), e_star, np.ones(depth.size, dtype=bool))
+    curve = None
+    if layer is not None:
+        curve = DepthCurve.up_to(profile, layer, max(float(depth.max()), 2 * float(np.ptp(depth))))
+    touches = np.ones(depth.size, dtype=bool)
+    model = _Model(profile, depth, force, tuple(fit), e_star, touches, curve)
     model, found = _adhesive(model) if "work_of_adhesion" in fit else (model, model.best())
     return model.result(found, noise, body_thickness)
 
@@ -256,12 +269,19 @@ def _adhesive(curve: "_Model") -> "tuple[_Model, _Parameters]":
 
 
 def _forces(
-    profile: Profile, pressed: Array, work: float, touches: Flags
+    profile: Profile,
+    pressed: Array,
+    work: float,
+    touches: Flags,
+    on_layer: DepthCurve | None = None,
 ) -> tuple[Array, Array, Array]:
     """Forces over E* at depths from first contact, and their slopes in the depth and in w/E*.
 
     With adhesion the force at less depth than that of the least force is the least.
     """
+    if on_layer is not None:
+        force, slope = on_layer(np.maximum(pressed, 0.0))
+        return force, np.where(pressed > 0, slope, 0.0), np.zeros_like(pressed)
     if not work:
         contact = normal.solve(profile, 1.0, indentation_depth=np.maximum(pressed, 0.0))
         slope = np.where(pressed > 0, contact.normal_stiffness, 0.0)
@@ -293,6 +313,8 @@ class _Model:
     e_star: float | None
     touches: Flags
     """Points that are not after a pull-off."""
+    on_layer: DepthCurve | None = None
+    """Force over depth on a layer, None on a half-space."""
 
     def best(self) -> _Parameters:
         """Return the parameters of the least sum of squares, or an InputError."""
@@ -301,6 +323,8 @@ class _Model:
         deepest = (
             inf if self.profile.largest_loads is None else float(self.profile.largest_loads[0])
         )
+        if self.on_layer is not None:
+            deepest = self.on_layer.deepest
         if "contact_point" in self.fit:
             # From as far before the curve as it is long; the curve has to stay on the profile.
             limits = max(2 * low - high, high - deepest), high
@@ -314,7 +338,7 @@ class _Model:
         starts: list[tuple[float, _Parameters]] = []
         for work in works.tolist():
             pressed = coarse.depth - tried[:, None]
-            forces, *_ = _forces(self.profile, pressed, work, coarse.touches)
+            forces, *_ = _forces(self.profile, pressed, work, coarse.touches, self.on_layer)
             for point, reduced in zip(tried.tolist(), forces, strict=True):
                 squares, modulus, offset = coarse.linear(reduced)
                 values = modulus, point, offset, work * modulus
@@ -383,7 +407,10 @@ class _Model:
         """Return the forces of the model, and their slopes in the fitted parameters."""
         e_star, d0, offset, work = (parameters[name] for name in PARAMETERS)
         ratio = work / e_star
-        forces, by_depth, by_work = _forces(self.profile, self.depth - d0, ratio, self.touches)
+        pressed = self.depth - d0
+        forces, by_depth, by_work = _forces(
+            self.profile, pressed, ratio, self.touches, self.on_layer
+        )
         columns = {
             # At constant w.
             "e_star": forces - ratio * by_work,
@@ -411,12 +438,16 @@ class _Model:
         # The inverse of a triangle, because the square of the matrix would lose half of the digits.
         inverse = np.linalg.inv(np.linalg.qr(slopes / scale, mode="r"))
         deviations = np.linalg.norm(inverse, axis=1)
-        material = Material(found["e_star"], body_thickness=body_thickness)
+        layer = None if self.on_layer is None else self.on_layer.layer
+        material = Material(found["e_star"], body_thickness=body_thickness, layer=layer)
         work = found["work_of_adhesion"]
         solve = partial(adhesion.solve, work_of_adhesion=work) if work else normal.solve
+        if layer is not None:
+            solve = layers.solve
         deepest = max(float(self.depth.max()) - found["contact_point"], 0.0)
         contact = solve(self.profile, material, indentation_depth=deepest)
         condition = float(np.linalg.norm(inverse, 2))
+        interpolated = 0.0 if self.on_layer is None else self.on_layer.error
         sigma = noise or scatter
         return Fit(
             self.fit,
@@ -431,7 +462,7 @@ class _Model:
             residual,
             sigma,
             self._misfit(slopes / scale, residual, noise),
-            condition * contact.error_estimate,
+            condition * (contact.error_estimate + interpolated),
         )
 
     def _misfit(self, slopes: Array, residual: Array, noise: float | None) -> float:

@@ -189,6 +189,9 @@ def from_bodies(
     if layer is not None:
         largest, nu = max(zip(compliances, ratios, strict=True), key=lambda each: each[0])
         nu = ratios[-1] if compliances[-1] == largest else nu
+        if layer.poissons_ratio not in {None, nu}:
+            detail = "differs from Poisson's ratio of the more compliant body: leave it out"
+            raise InputError(("material", "layer", "poissons_ratio"), detail)
         layer = replace(layer, poissons_ratio=nu, share=largest / normal)
     return Material(*moduli, ratios, share, body_thickness, 1 / twist, layer)
 

@@ -1,21 +1,26 @@
 """Force over depth of one profile on a layer, for fits of many points."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Final, Self
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts1, chebval, chebvander
 
 from mdr_core.elementwise import full
+from mdr_core.errors import InputError
 from mdr_core.inversion import invert
 from mdr_core.layer.equation import largest_coordinate, states
-from mdr_core.materials import Layer
+from mdr_core.layer.solver import solve
+from mdr_core.materials import Layer, Material
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
 # Polynomials over the contact radius between two breaks of the profile, and one more for each a/h.
 _COUNT, _MORE = 20, 3
+# Depths from which a search starts: two steps reach rounding error.
+_STARTS: Final = 500
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +35,16 @@ class DepthCurve:
     layer: Layer
     end: float
     """Largest contact coordinate."""
+
+    @classmethod
+    def up_to(cls, profile: Profile, layer: Layer, depth: float) -> Self:
+        """Return the curve up to a depth, or to the largest contact that the layer allows."""
+        if profile.has_no_partial_slip:
+            return cls(profile, layer, np.inf)
+        with suppress(InputError):
+            contact = solve(profile, Material(1.0, layer=layer), indentation_depth=depth)
+            return cls(profile, layer, float(contact.coordinate))
+        return cls(profile, layer, largest_coordinate(profile, layer))
 
     @cached_property
     def _edges(self) -> Array:
@@ -62,14 +77,24 @@ class DepthCurve:
         ratios = chebval(2 * z - 1, self._ratios[..., place], tensor=False)
         return tuple(ratio * part for ratio, part in zip(ratios, self._plain(s), strict=True))
 
+    @cached_property
+    def _coarse(self) -> tuple[Array, Array]:
+        """Depths and contact coordinates between which a search starts."""
+        s = self.end * np.linspace(0.0, 1.0, _STARTS) ** 2
+        return np.append(0.0, self._at(s[1:])[0]), s
+
     @property
     def error(self) -> float:
         """Estimated relative error by the interpolation [1]."""
+        if self.profile.has_no_partial_slip:
+            return 0.0
         return float(np.abs(self._ratios[-2:]).max())
 
     @cached_property
     def deepest(self) -> float:
-        """Largest depth [length]."""
+        """Largest depth [length], infinite under a flat punch."""
+        if self.profile.has_no_partial_slip:
+            return np.inf
         return float(self._at(np.atleast_1d(self.end))[0][0])
 
     def __call__(self, depth: Array) -> tuple[Array, Array]:
@@ -83,7 +108,7 @@ class DepthCurve:
             stiffness = states(self.profile, self.layer, np.ones(1)).stiffness[0]
             return stiffness * depth, full(stiffness, depth)
         goal = np.minimum(depth.ravel(), self.deepest)
-        start = self.end * np.sqrt(goal / self.deepest)
+        start = np.interp(goal, *self._coarse)
         ends = full(0.0, goal), full(self.end, goal)
         s = invert(sloped, goal, np.where(goal > 0, start, self.end), *ends, "layer")
         _, force, stiffness, _ = self._at(s)

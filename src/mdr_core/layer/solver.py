@@ -26,7 +26,7 @@ _DEEPER: Final = 4.0
 
 def solve(
     profile: Profile,
-    material: Material,
+    e_star: Material,
     *,
     indentation_depth: ArrayLike | None = None,
     normal_force: ArrayLike | None = None,
@@ -39,7 +39,7 @@ def solve(
     Parameters
     ----------
     profile : any kind, with single numbers as parameters.
-    material : material with a `layer`, as from `from_bodies`.
+    e_star : material with a `layer`, as from `from_bodies`.
     indentation_depth, normal_force, contact_radius : see `normal.solve`.
     work_of_adhesion, range_of_adhesion : see `adhesion.solve`; without adhesion by default.
 
@@ -61,22 +61,22 @@ def solve(
     """
     validation.require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     validation.require_single_profile(profile.swept)
-    validation.require_type("material", material, Material, "a Material with a layer")
-    layer, e_star = material.layer, material.e_star
+    validation.require_type("e_star", e_star, Material, "a Material with a layer")
+    material, layer, modulus = e_star, e_star.layer, e_star.e_star
     if layer is None:
         raise InputError(("material", "layer"), "is needed")
-    validation.require_single_positive(("material", "e_star"), e_star)
+    validation.require_single_positive(("material", "e_star"), modulus)
     loads = dict(zip(CONTROLS, (indentation_depth, normal_force, contact_radius), strict=True))
     softening(layer, np.ones(1))
     if work_of_adhesion is not None:
         validation.require_single_positive(("material", "work_of_adhesion"), work_of_adhesion)
-        c = sqrt(2 * pi) * sqrt(work_of_adhesion) / sqrt(e_star)
+        c = sqrt(2 * pi) * sqrt(work_of_adhesion) / sqrt(modulus)
         curve = Curve(profile, c, layer)
-        return adhesion.on_curve(curve, e_star, material, loads, range_of_adhesion)
+        return adhesion.on_curve(curve, modulus, material, loads, range_of_adhesion)
     # Checks the loads as well.
     name, load = validation.only_one(("load",), loads)
-    coordinate = _coordinate(profile, layer, name, load / e_star if name == CONTROLS[1] else load)
-    contact = LayerContact(profile, e_star, coordinate, name, material, layer=layer)
+    coordinate = _coordinate(profile, layer, name, load / modulus if name == CONTROLS[1] else load)
+    contact = LayerContact(profile, modulus, coordinate, name, material, layer=layer)
     vars(contact)[name] = load
     return contact
 

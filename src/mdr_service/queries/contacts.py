@@ -10,20 +10,21 @@ from typing import Any, Final
 
 import numpy as np
 
-from mdr_core import adhesion, profiles, subsurface, validity
+from mdr_core import adhesion, layer, profiles, subsurface, validity
 from mdr_core import normal as normal_contact
 from mdr_core import tangential as tangential_contact
 from mdr_core.elementwise import every
 from mdr_core.errors import DefectError, InputError, Notice
 from mdr_core.history import LoadHistory
 from mdr_core.impact import Impact
+from mdr_core.materials import UNUSABLE
 from mdr_core.normal import ACCURACY, NormalContact, inaccurate
 from mdr_core.results import Results
 from mdr_core.tangential import TangentialContact
 from mdr_core.torsion import TorsionalContact
 from mdr_core.typing import Array, Flags
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
-from mdr_service.schemas.fields import LoadedQuery
+from mdr_service.schemas.fields import LoadedQuery, StressQuery
 from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.torsion import TorsionQuery
 from mdr_service.schemas.wear import WearQuery
@@ -46,6 +47,7 @@ def solve_normal(query: NormalQuery | LoadedQuery | WearQuery | TorsionQuery) ->
     arguments = body(query) | control(query.load)
     given = query.material.model_dump(include=ADHESION, exclude_unset=True)
     solve: Any = adhesion.solve if given else normal_contact.solve
+    solve = layer.solve if query.material.has("layer") else solve
     contact: NormalContact = solve(**arguments, **given)
     return contact
 
@@ -83,6 +85,10 @@ def body(query: Query) -> Arguments:
     Raises InputError where adhesion meets friction or yield, or has a range and no work.
     """
     material = query.material
+    if material.has("layer"):
+        other = not isinstance(query, NormalQuery | StressQuery) or material.has("yield_strength")
+        if other or query.has("friction_coefficient"):
+            raise InputError(("material", "layer"), UNUSABLE)
     if material.has("work_of_adhesion"):
         if query.has("friction_coefficient"):
             raise InputError(("material", "work_of_adhesion"), adhesion.AdhesiveContact.unusable)

@@ -5,6 +5,7 @@ import numpy as np
 from mdr_core import fit
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
+from mdr_core.materials import Layer
 from mdr_service.queries.contacts import ADHESION, Result, checked, profile
 from mdr_service.schemas.fits import FitQuery
 
@@ -31,6 +32,7 @@ def solve_fit(query: FitQuery) -> Fit:
         e_star=known.effective.e_star if known else None,
         noise=query.noise,
         body_thickness=query.body_thickness or (known.body_thickness if known else None),
+        layer=Layer(**vars(query.layer)) if query.has("layer") else known and known.effective.layer,
     )
 
 

@@ -1,5 +1,6 @@
 """Requests about contacts under a load, and the parts that all requests share."""
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
@@ -12,6 +13,7 @@ from mdr_service.schemas.quantities import (
     ScalarOrArray,
     SignedScalarOrArray,
     Strict,
+    left_out,
     positive,
     quantity,
 )
@@ -132,6 +134,31 @@ def thickness() -> Any:
     )
 
 
+class ElasticLayer(Strict):
+    """Elastic layer on a rigid base: the more compliant body."""
+
+    thickness: float = positive("length", "Thickness h of the layer")
+    base: Literal["bonded", "frictionless"] = Field(
+        description="How the layer is held: `bonded` to its base, or sliding on it without friction"
+    )
+    poissons_ratio: float = quantity(
+        "1",
+        "Poisson's ratio ν of the layer, needed on a bonded base unless the material has it",
+        default=None,
+        gt=-1,
+        le=0.5,
+    )
+
+
+def layer() -> Any:
+    """Return the optional field of an elastic layer."""
+    return left_out(
+        "Layer on a rigid base, with which `/v1/normal` (adhesive contacts too), the normal fields "
+        "of `/v1/stress` and `/v1/normal/fit` compute, up to a = 10 h; E* is the modulus of "
+        "half-spaces of the same materials"
+    )
+
+
 class Elastic(Strict):
     """Material of a contact."""
 
@@ -154,6 +181,12 @@ class Elastic(Strict):
         default=None,
     )
     body_thickness: float = thickness()
+    layer: ElasticLayer = layer()
+
+    @property
+    def on_base(self) -> materials.Layer | None:
+        """Layer of the core, None where there is none."""
+        return materials.Layer(**vars(self.layer)) if self.has("layer") else None
 
 
 class Bodies(Elastic):
@@ -172,6 +205,7 @@ class Bodies(Elastic):
                 for each in self.bodies
             ],
             body_thickness=self.body_thickness,
+            layer=self.on_base,
         )
 
 
@@ -202,12 +236,16 @@ class Moduli(Elastic):
     def effective(self) -> materials.Material:
         """Effective moduli."""
         known = (self.poissons_ratio,) if self.has("poissons_ratio") else ()
+        layer = self.on_base
+        if layer is not None and layer.poissons_ratio is None:
+            layer = replace(layer, poissons_ratio=self.poissons_ratio)
         return materials.Material(
             self.e_star,
             self.g_star,
             poissons_ratios=known,
             body_thickness=self.body_thickness,
             shear_modulus=self.shear_modulus,
+            layer=layer,
         )
 
 

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.contacts import Axes, Material, Query, thickness
+from mdr_service.schemas.contacts import Axes, ElasticLayer, Material, Query, layer, thickness
 from mdr_service.schemas.fields import OnceEach
 from mdr_service.schemas.quantities import Signed, left_out, positive, quantity
 from mdr_service.settings import SETTINGS
@@ -37,3 +37,4 @@ class FitQuery(Query):
         default=None,
     )
     body_thickness: float = thickness()
+    layer: ElasticLayer = layer()
