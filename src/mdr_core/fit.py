@@ -7,7 +7,7 @@ stable state, as on unloading, and zero after the pull-off.
 Source: notes, §15.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
@@ -441,7 +441,9 @@ class _Model:
         layer = None if self.on_layer is None else self.on_layer.layer
         material = Material(found["e_star"], body_thickness=body_thickness, layer=layer)
         work = found["work_of_adhesion"]
-        solve = partial(adhesion.solve, work_of_adhesion=work) if work else normal.solve
+        solve: Callable[..., NormalContact] = normal.solve
+        if work:
+            solve = partial(adhesion.solve, work_of_adhesion=work)
         if layer is not None:
             solve = layers.solve
         deepest = max(float(self.depth.max()) - found["contact_point"], 0.0)

@@ -193,6 +193,8 @@ class NormalContact(validity.ContactResults):
             validity.Finding("singular", np.isinf(self.mean_pressure), lambda: sharp),
             validity.infinite_maximum(self),
         ]
+        if self.material is not None and self.material.layer is not None:
+            found.append(validity.layer_strain(self.indentation_depth, self.material.layer))
         if isinstance(self.profile, Tabulated):
             return [validity.table_end(self), validity.smoothed(self, self.profile), *found]
         return found

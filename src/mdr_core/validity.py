@@ -1,8 +1,8 @@
 """Limits of validity of the model: findings with stable codes.
 
-The codes are `table_end`, `smoothed`, `half_space`, `thin_body`, `plastic`, `elastic_similarity`
-and `impossible_moduli`; `singular` and `accuracy` come with the results, and `yield` from
-`mdr_core.subsurface`.
+The codes are `table_end`, `smoothed`, `half_space`, `thin_body`, `layer_strain`, `plastic`,
+`elastic_similarity` and `impossible_moduli`; `singular` and `accuracy` come with the results, and
+`yield` from `mdr_core.subsurface`.
 
 Source: notes, §8.
 """
@@ -15,7 +15,7 @@ import numpy as np
 
 from mdr_core.elementwise import every, full, number, some, where
 from mdr_core.errors import Notice, Remedy
-from mdr_core.materials import Material
+from mdr_core.materials import Layer, Material
 from mdr_core.profiles import Profile, Sphere, Tabulated
 from mdr_core.results import Results
 from mdr_core.typing import Array, Flags, Parameter
@@ -31,6 +31,8 @@ _LIMITS: Final = {
     "half_space": 0.01,
     # Contact radius over the thickness of a body.
     "thin_body": 0.1,
+    # Depth over the thickness of a layer, the size of its strain.
+    "layer_strain": 0.1,
     # |beta|, by which normal and tangential contact are coupled.
     "elastic_similarity": 0.05,
 }
@@ -45,6 +47,11 @@ _ASSUMED_BETA: Final = (1 - 2 * ASSUMED_RATIO) / (2 * (1 - ASSUMED_RATIO))
 # Compliance that a half-space lacks, over its own 0.46/(E b): that of a cylinder of radius b and
 # length 6 b is L/(pi E b^2).
 _WALL: Final = 3.0
+# Error of the force on a bonded incompressible layer over the slope at the edge and (a/h)^2, its
+# levelling off with (a/h)^2, and the power of nu/(1 - nu) by which it falls with compressibility:
+# -0.003, -0.083 and -0.88 at a/h 0.1, 0.5 and 2 for nu = 1/2, and -0.12 at 2 for nu = 0.3.
+# Source: notes, §19, finite elements.
+_SQUEEZED, _LEVELS, _COMPRESSIBLE = 0.32, 0.114, 2.5
 # Relative change of forces at a given displacement by transverse slip, and of displacements under
 # forces up to 0.998 of full slip, over (nu/(4 - 2 nu))^2. Source: notes, §8.
 _TRANSVERSE: Final = 0.2
@@ -155,6 +162,8 @@ def model_error(contact: SolvedContact, material: Material | None) -> Array:
     """
     *_, error = _half_space(contact.normal, material)
     error = error + _layer(contact.normal, material)[1]
+    if material is not None and material.layer is not None:
+        error = error + _on_layer(contact.normal, material.layer)
     if contact.g_star is not None:
         beta = 0.0 if material is None else material.dundurs_beta or 0.0
         ratio = _largest_ratio(material)
@@ -287,6 +296,31 @@ def _layer(contact: LoadedContact, material: Material | None) -> tuple[Array, Ar
     nu = _largest_ratio(material)
     x = 2 / np.pi * (1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu) * part
     return part, x + x * x
+
+
+def _on_layer(contact: LoadedContact, layer: Layer) -> Array:
+    """Relative error of the force on a layer by the neglected radial displacement [1].
+
+    Over the slope at the edge it is 0.3 (a/h)^2 on thin bonded incompressible layers, and far less
+    on compressible ones. Source: notes, §19, finite elements.
+    """
+    part = contact.contact_radius / layer.thickness
+    nu = ASSUMED_RATIO if layer.poissons_ratio is None else max(layer.poissons_ratio, 0.0)
+    bent = _SQUEEZED * part**2 / (1 + _LEVELS * part**2)
+    return np.asarray(bent * (nu / (1 - nu)) ** _COMPRESSIBLE * _edge_slope(contact))
+
+
+def layer_strain(depth: Array, layer: Layer) -> Finding:
+    """Return `layer_strain`: depths that are not small against the thickness of the layer."""
+    part = np.abs(depth) / layer.thickness
+
+    def message() -> str:
+        return (
+            f"the depth is {extremes(part)[1]:.2g} times the thickness of the layer, which strains "
+            "it beyond linear elasticity: use a smaller load, or finite elements"
+        )
+
+    return _above_limit("layer_strain", part, message, "finite_elements")
 
 
 def _thickness(profile: Profile, material: Material | None) -> Parameter:

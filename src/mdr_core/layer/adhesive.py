@@ -9,7 +9,6 @@ from mdr_core import adhesion
 from mdr_core.layer.contact import LayerContact
 from mdr_core.layer.equation import States, largest_coordinate, states
 from mdr_core.materials import Layer
-from mdr_core.normal import NormalContact
 from mdr_core.profiles import FlatPunch, Profile
 from mdr_core.typing import Array, Indices
 
@@ -38,14 +37,15 @@ class Curve(adhesion.Curve):
         """Coordinate of the largest contact."""
         return largest_coordinate(self.profile, self.layer)
 
-    def pressed(self, *known: Any) -> NormalContact:
+    def pressed(self, *known: Any) -> LayerContact:
         """Return a contact without adhesion; `known` are the arguments of `NormalContact`."""
         return LayerContact(*known, layer=self.layer)
 
     def correction(self, contact: adhesion.AdhesiveContact, load: Indices, r: Array) -> Array:
         """Pressure over E* beyond the half-space's at radii, each under the load of an index."""
         radii, retraction = map(np.ravel, (contact.contact_radius, contact.retraction))
-        parts = contact.reference, self.pressed(FlatPunch(radii), 1.0, retraction)
+        known = contact.profile, contact.e_star, contact.coordinate
+        parts = self.pressed(*known), self.pressed(FlatPunch(radii), 1.0, retraction)
         whole, punch = (part.correction(load, r) for part in parts)
         return np.asarray(whole - punch)
 

@@ -6,9 +6,9 @@ from functools import cached_property
 from typing import Final, Self
 
 import numpy as np
-from numpy.polynomial.chebyshev import chebpts1, chebval, chebvander
+from numpy.polynomial.chebyshev import chebpts1, chebvander
 
-from mdr_core.elementwise import full
+from mdr_core.elementwise import full, number
 from mdr_core.errors import InputError
 from mdr_core.inversion import invert
 from mdr_core.layer.equation import largest_coordinate, states
@@ -55,7 +55,7 @@ class DepthCurve:
     @cached_property
     def _ratios(self) -> Array:
         """Chebyshev coefficients, shape (modes, quantities, intervals)."""
-        part = self.profile.contact_radius(np.float64(self.end)) / self.layer.thickness
+        part = self.profile.contact_radius(number(self.end)) / self.layer.thickness
         nodes, edges = chebpts1(_COUNT + int(_MORE * part)), self._edges
         s = edges[:-1] + np.diff(edges) * np.square((nodes[:, None] + 1) / 2)
         found = states(self.profile, self.layer, s.ravel())
@@ -74,7 +74,9 @@ class DepthCurve:
         edges = self._edges
         place = np.clip(np.searchsorted(edges, s) - 1, 0, edges.size - 2)
         z = np.sqrt(np.clip((s - edges[place]) / np.diff(edges)[place], 0.0, 1.0))
-        ratios = chebval(2 * z - 1, self._ratios[..., place], tensor=False)
+        modes, ratios = chebvander(2 * z - 1, len(self._ratios) - 1), np.empty((4, s.size))
+        for k in np.unique(place):
+            ratios[:, place == k] = self._ratios[..., k].T @ modes[place == k].T
         return tuple(ratio * part for ratio, part in zip(ratios, self._plain(s), strict=True))
 
     @cached_property

@@ -24,6 +24,7 @@ def solve_fit(query: FitQuery) -> Fit:
         detail = "is not an input of a fit: add work_of_adhesion to fit to determine it"
         raise InputError(("material", "work_of_adhesion"), detail)
     known = query.material if query.has("material") else None
+    in_material = known.effective.layer if known else None
     return fit.solve(
         profile(query.profile),
         indentation_depth=query.indentation_depth,
@@ -32,7 +33,7 @@ def solve_fit(query: FitQuery) -> Fit:
         e_star=known.effective.e_star if known else None,
         noise=query.noise,
         body_thickness=query.body_thickness or (known.body_thickness if known else None),
-        layer=Layer(**vars(query.layer)) if query.has("layer") else known and known.effective.layer,
+        layer=Layer(**vars(query.layer)) if query.has("layer") else in_material,
     )
 
 
