@@ -287,7 +287,8 @@ def test_fields_carry_the_force(work: float | None) -> None:
     assert line == pytest.approx(contact.normal_force[0], rel=1e-7, abs=0)
     # The surface is continuous at the edge, and far away the other body's.
     near = fields.normal_displacement(contact, a * np.array([1 - 1e-12, 1 + 1e-12, 200.0]))[0]
-    assert near[0] == pytest.approx(near[1], rel=1e-5, abs=0)
+    # With adhesion like a root.
+    assert near[0] == pytest.approx(near[1], rel=1e-4, abs=0)
     point = 0.3 * contact.normal_force[0] / (np.pi * 200 * a)
     assert near[2] == pytest.approx(point, rel=1e-4, abs=0)
 
@@ -341,7 +342,7 @@ def test_layers_are_rejected_where_they_do_not_combine() -> None:
     contact = layer.solve(Paraboloid(1.0), material, indentation_depth=0.1)
     with pytest.raises(InputError, match="half-space"):
         tangential.solve(contact, 1.0, 0.3, stick_radius=0.1)
-    with pytest.raises(InputError, match="Poisson"):
+    with pytest.raises(InputError, match="poissons_ratio"):
         layer.solve(Paraboloid(1.0), _material(1, BONDED, None), indentation_depth=0.1)
     with pytest.raises(InputError, match="10 times the thickness"):
         layer.solve(Paraboloid(1.0), _material(20, BONDED, 0.3), contact_radius=1.0)
@@ -353,7 +354,8 @@ def test_layers_are_rejected_where_they_do_not_combine() -> None:
 
 def test_strain_and_radial_error_on_a_thin_incompressible_layer() -> None:
     """Finite elements give the force -0.32 a/R and -0.88 a/R at a/h = 1 and 2."""
-    contact = layer.solve(Paraboloid(1e3), _material(1, BONDED, 0.5), contact_radius=[1.0, 2.0])
+    gel = from_bodies(["rigid", Body(1.0, 0.5)], layer=Layer(1.0))
+    contact = layer.solve(Paraboloid(1e3), gel, contact_radius=[1.0, 2.0])
     assert contact.model_error == pytest.approx([0.32e-3, 2 * 0.88e-3], rel=0.15, abs=0)
     assert contact.warnings == ()
     deep = layer.solve(Paraboloid(1.0), _material(1, BONDED, 0.5), indentation_depth=0.2)
