@@ -88,13 +88,13 @@ def recorded(page: Page, address: str) -> list[list[Any]]:
         lambda each: each.method == "POST" and requests.append([each.url, each.post_data_json]),
     )
     drag(page, address, "push", "rounded_punch")
-    of_path = [[url.partition("/v1")[2], body] for url, body in requests[3:]]
-    return [of_path[i : i + 3] for i in range(0, len(of_path) - 2, 3)]
+    of_path = [[url.partition("/v1")[2], body] for url, body in requests[4:]]
+    return [of_path[i : i + 4] for i in range(0, len(of_path) - 3, 4)]
 
 
 async def dragging(port: int, drawings: list[list[Any]]) -> None:
     """Send the requests of a browser whose slider is dragged continuously."""
-    async with clients(port, 3) as connections:
+    async with clients(port, 4) as connections:
         while True:
             for drawing in drawings:
                 requests = [post(f"/v1{path}", body) for path, body in drawing]

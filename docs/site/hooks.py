@@ -52,7 +52,10 @@ def _mathml(found: "re.Match[str]") -> str:
 
 
 def on_post_page(output: str, page: Any, **_: object) -> str:
-    """Move scripts of the theme into files, so that the policy can forbid scripts in pages."""
+    """Move scripts of the theme into files, so that the policy can forbid scripts in pages.
+
+    The dialog of the search gets the name that screen readers announce.
+    """
 
     def moved(found: "re.Match[str]") -> str:
         name = f"assets/javascripts/{sha256(found[1].encode()).hexdigest()[:16]}.js"
@@ -60,7 +63,9 @@ def on_post_page(output: str, page: Any, **_: object) -> str:
         root = "../" * page.url.count("/")
         return f'<script src="{root}{name}"></script>'
 
-    return _SCRIPT.sub(moved, output)
+    search = 'data-md-component="search" role="dialog"'
+    named = output.replace(search, f'{search} aria-label="Search"')
+    return _SCRIPT.sub(moved, named)
 
 
 def on_post_build(config: Any) -> None:

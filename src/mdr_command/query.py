@@ -13,6 +13,7 @@ from collections.abc import Container
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 from pydantic.fields import FieldInfo
 
 from mdr_command import ExitStatus
@@ -36,11 +37,12 @@ _STATUS: Final = {
 _STANDARD_INPUT: Final = "-"
 # Options that are not numbers.
 _TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities"})
+# Heights between which an area function describes a tip.
+_HEIGHTS: Final = ("largest_height", "lowest_height")
 # Options beside the parameters of the request.
 _OTHER_OPTIONS: Final = frozenset(
-    {"output", "size", "units", "table", "area_coefficients", "largest_height", "length_unit"}
+    {"output", "size", "units", "table", "area_coefficients", "length_unit", *_HEIGHTS}
 )
-_AREA_OPTIONS: Final = {"profile.largest_height": "largest_height"}
 # Names of parameters that cannot be words of a sentence.
 _NAME: Final = re.compile(r"\w+_\w+")
 _ONCE: Final = "is given more than once; several loads are a range (--help), or JSON"
@@ -94,6 +96,12 @@ def declare(parser: argparse.ArgumentParser) -> None:
             "--largest-height",
             metavar="NUMBER",
             help="height h up to which the area function describes the tip",
+        )
+        group.add_argument(
+            "--lowest-height",
+            metavar="NUMBER",
+            help="height h from which the area function is valid (default: 0); below, the tip is "
+            "continued smoothly",
         )
         # By default -1e-3 counts as an option; argparse has no public way to change that.
         parser._negative_number_matcher = re.compile(r"-\.?\d")  # noqa: SLF001
@@ -177,23 +185,33 @@ def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
         raise InputError((option,), f"is a profile: leave out --{replaced[0].replace('_', '-')}")
     given["kind"] = OF_NUMBERS[0]
     if file:
-        r, f = read_table(file, unit.split(",") if unit and "," in unit else unit)
+        r, f = _thinned(
+            arguments, read_table(file, unit.split(",") if unit and "," in unit else unit)
+        )
     else:
-        r, f = _tip(str(area), arguments.largest_height, unit or "m")
+        r, f = _tip(str(area), [vars(arguments)[name] for name in _HEIGHTS], unit or "m")
     return {"kind": "tabulated", "r": r.tolist(), "f": f.tolist()}
 
 
-def _tip(coefficients: str, largest_height: str | None, unit: str) -> Points:
+def _thinned(arguments: argparse.Namespace, points: Points) -> Points:
+    """Return an even choice of as many points as a request may have, and report it."""
+    most, count = SETTINGS.max_table_points, points.r.size
+    if count <= most:
+        return points
+    _say(arguments, arguments.table, f"{count} points, of which {most} are used")
+    chosen = np.argsort(points.r)[np.linspace(0, count - 1, most).round().astype(int)]
+    return Points(points.r[chosen], points.f[chosen])
+
+
+def _tip(coefficients: str, heights: list[str | None], unit: str) -> Points:
     """Return the points of a tip, in metres, from the coefficients of its area function."""
     try:
-        numbers, most = (
-            [float(each) for each in coefficients.split(",")],
-            float(largest_height or 0),
-        )
+        numbers = [float(each) for each in coefficients.split(",")]
+        limits = [float(each or 0) for each in heights]
     except ValueError as error:
         detail = "gives numbers with commas between them, with --largest-height"
         raise InputError(("area_coefficients",), detail) from error
-    r, f = tip_points(numbers, most)
+    r, f = tip_points(numbers, *limits)
     return Points(metres(unit) * r, metres(unit) * f)
 
 
@@ -244,7 +262,9 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
         if error.type == problems.MALFORMED_JSON:
             parts.append(_REQUEST + (_BY_OPTIONS if names else ""))
         elif area and f"{place}.".startswith(("kind.", "profile.")):
-            parts = [_option(_AREA_OPTIONS.get(place, "area_coefficients"), _OTHER_OPTIONS), detail]
+            name = place.removeprefix("profile.")
+            option = name if name in _HEIGHTS else "area_coefficients"
+            parts = [_option(option, _OTHER_OPTIONS), detail]
         elif table and f"{place}.".startswith(("kind.", "profile.", "table.")):
             parts = [table, place.partition(".")[2], detail]
         elif by_options or place in _OTHER_OPTIONS:

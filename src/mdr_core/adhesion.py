@@ -32,7 +32,7 @@ from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import LEAST_GAP, largest_with
 from mdr_core.materials import Material, normal_modulus
 from mdr_core.normal import CONTROLS, NormalContact
-from mdr_core.profiles import FlatPunch, Profile
+from mdr_core.profiles import FlatPunch, Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.typing import Array, Indices
 
@@ -264,6 +264,17 @@ class AdhesiveContact(NormalContact):
     def data_error(self) -> Array | None:
         """That of the reference."""
         return self.reference.data_error
+
+    @property
+    def pull_off_data_error(self) -> Array | None:
+        """Relative error of the pull-off force that the points of a table leave open [1].
+
+        An estimate, of F_0 at the radius at pull-off, where the force is stationary.
+        """
+        if not isinstance(self.profile, Tabulated):
+            return None
+        moment = self.profile.fit.spread_at(np.array(self.curve.at_pull_off))[1]
+        return 2 * moment / abs(self.curve.least["normal_force"])
 
     @property
     def method(self) -> str:

@@ -16,6 +16,7 @@ from mdr_core.extrema import largest_stress
 from mdr_core.materials import Material, normal_modulus
 from mdr_core.profiles import Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
+from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import (
     extremes,
@@ -30,6 +31,13 @@ CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
 ACCURACY: Final = 1e-9
 """Error estimate above which results carry the warning `accuracy`: results next to a limit of their
 method have this accuracy (manual, Speed and accuracy)."""
+
+# Gauss's rule for the error of pressures, an estimate: nodes on each of equal intervals.
+_OF_PRESSURE: Final = (8, 8)
+# Radius over that of the second knot of a table at which the pressure on the axis is judged.
+_TIP: Final = 0.1
+# Radii over the contact radius at which the error of pressures is computed, beside the axis.
+_PLACES: Final = (0.3, 0.6, 0.9)
 
 
 @dataclass(frozen=True, repr=False)
@@ -132,6 +140,31 @@ class NormalContact(validity.ContactResults):
         ]
         return np.maximum(*errors)
 
+    @cached_property
+    def pressure_data_error(self) -> Array | None:
+        """Error of pressures that the points of a table leave open, over the largest pressure [1].
+
+        An estimate of dp(r)/E* = (1/pi) int_r^a dg'(x)/sqrt(x^2 - r^2) dx and of the error of a, at
+        a few radii; None for profiles that are known, infinite next to a sharp tip.
+        """
+        if not isinstance(self.profile, Tabulated):
+            return None
+        fit, loaded = self.profile.fit, self.loaded
+        a = np.ravel(np.where(loaded, self.contact_radius, self.profile.domain))
+        # On the axis itself a sharp tip that is not excluded has an infinite pressure.
+        r = np.stack([np.minimum(_TIP * fit.edges[1], a / 2), *np.outer(_PLACES, a)])
+        root = np.sqrt((a - r) * (a + r))[..., None]
+        # s = sqrt(x^2 - r^2) has nodes near the axis too.
+        shares, weights = composite_rule(*_OF_PRESSURE)
+        x = np.hypot(r[..., None], root * shares**3).reshape(-1, shares.size)
+        kernel = (3 * root * shares**2 * weights).reshape(x.shape) / x
+        of_edge = fit.spread_at(a)[0] * (self.control != "contact_radius") / root[..., 0]
+        size = np.hypot(fit.spread_of(x, kernel).reshape(r.shape), of_edge).max(axis=0) / np.pi
+        largest = np.ravel(self.maximum_pressure / self.e_star)
+        known = np.isfinite(largest) & (largest > 0)
+        part = np.where(known, size / np.where(known, largest, 1.0), np.inf)
+        return np.where(loaded, part.reshape(np.shape(loaded)), 0.0)[()]
+
     @property
     def method(self) -> str:
         """Most expensive method among the results for this profile."""
@@ -196,7 +229,8 @@ class NormalContact(validity.ContactResults):
         if self.material is not None and self.material.layer is not None:
             found.append(validity.layer_strain(self.indentation_depth, self.material.layer))
         if isinstance(self.profile, Tabulated):
-            return [validity.table_end(self), validity.smoothed(self, self.profile), *found]
+            of_table = [validity.tip(self, self.profile), validity.smoothed(self, self.profile)]
+            return [validity.table_end(self), *of_table, *found]
         return found
 
 

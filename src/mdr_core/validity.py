@@ -1,6 +1,6 @@
 """Limits of validity of the model: findings with stable codes.
 
-The codes are `table_end`, `smoothed`, `half_space`, `thin_body`, `layer_strain`, `plastic`,
+The codes are `table_end`, `smoothed`, `tip`, `half_space`, `thin_body`, `layer_strain`, `plastic`,
 `elastic_similarity` and `impossible_moduli`; `singular` and `accuracy` come with the results, and
 `yield` from `mdr_core.subsurface`.
 
@@ -9,6 +9,7 @@ Source: notes, §8.
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
+from math import pi, sqrt
 from typing import Final, NamedTuple, Protocol
 
 import numpy as np
@@ -27,6 +28,8 @@ _LIMITS: Final = {
     "table_end": 0.95,
     # Deviation of a table's profile from its points over the depth.
     "smoothed": 1e-3,
+    # Probability of a sharp tip where a table's profile is smooth, or the reverse.
+    "tip": 0.025,
     # Relative error of the half-space approximation.
     "half_space": 0.01,
     # Contact radius over the thickness of a body.
@@ -213,10 +216,25 @@ def smoothed(contact: LoadedContact, profile: Tabulated) -> Finding:
         return (
             f"no smooth admissible profile meets the points: it deviates by {largest:.2g} at "
             f"radius {radius:.3g}, and by {rms:.2g} in the root mean square. The largest deviation "
-            f"is {100 * extremes(part)[1]:.2g} % of the depth: see data_error"
+            f"is {100 * extremes(part)[1]:.2g} % of the depth: see data_error. The point at radius "
+            f"{profile.fit.deciding:.3g} decides most"
         )
 
     return _above_limit("smoothed", part, message)
+
+
+def tip(contact: LoadedContact, profile: Tabulated) -> Finding:
+    """Return `tip`: tables whose points do not tell a sharp tip from a smooth one."""
+    rival = profile.fit.rival
+    other = "smooth" if profile.tip_pressure > 0 else "sharp, with infinite pressure on the axis"
+
+    def message() -> str:
+        return (
+            f"the tip is {other}, with a probability of {_per_cent(rival)}: pressures near the "
+            "axis are open; add points there"
+        )
+
+    return _above_limit("tip", full(rival, contact.contact_radius), message)
 
 
 def of_normal_contact(
@@ -254,8 +272,13 @@ def of_normal_contact(
         )
 
     ratios = () if material is None else material.poissons_ratios
+    profile = contact.profile
+    tip_is_open = isinstance(profile, Tabulated) and profile.fit.rival > _LIMITS["tip"]
 
-    def yields(radius: Parameter) -> Flags:
+    def yields(radius: Parameter) -> Flags | bool:
+        # A tip of a table that may be smooth as well proves nothing.
+        if tip_is_open and radius == 0:
+            return False
         return infinite_deviator(contact.profile, radius, ratios, slips_from)
 
     def places() -> str:
@@ -293,9 +316,19 @@ def _layer(contact: LoadedContact, material: Material | None) -> tuple[Array, Ar
     Source: dimitriadis; notes, §8.
     """
     part = contact.contact_radius / _thickness(contact.profile, material)
-    nu = _largest_ratio(material)
-    x = 2 / np.pi * (1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu) * part
+    x = _base(material) * part
     return part, x + x * x
+
+
+def _base(material: Material | None) -> float:
+    """x over a/h. Source: dimitriadis; see `_layer`."""
+    nu = _largest_ratio(material)
+    return 2 / pi * (1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu)
+
+
+def stiffening(tolerance: float, material: Material | None) -> float:
+    """Return a/h at which the base increases the force at a given depth by a tolerance [1]."""
+    return (sqrt(1 + 4 * tolerance) - 1) / (2 * _base(material))
 
 
 def _on_layer(contact: LoadedContact, layer: Layer) -> Array:

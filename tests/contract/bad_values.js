@@ -39,7 +39,8 @@ async ({ tabs, kinds, values }) => {
                 const { state, drawn } = body.dataset;
                 states[state] = (states[state] ?? 0) + 1;
                 const shown = document.querySelector("#numbers");
-                const value = new URLSearchParams(drawn.split("#")[0]).get(key);
+                // The address leaves out what has its default.
+                const value = new URLSearchParams(drawn.split("#")[0]).get(key) ?? String(withKind(defaultInputs(), kind)[key]);
                 const belong = state === "current" && value === (text && String(Number(text)));
                 const empty = shown.childElementCount === 0;
                 const dimmed = [...document.querySelectorAll("#numbers, #charts, #main-numbers")].every(({ inert }) => inert)

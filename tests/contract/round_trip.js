@@ -25,6 +25,8 @@ async (count) => {
         for (const [key, value] of Object.entries(inputs)) {
             if (typeof value === "number" && !/^nu|exponent|body/.test(key)) inputs[key] = value * (0.7 + 0.6 * Math.random());
         }
+        // The moduli are those of no material, whose density would tell the mass of a ball.
+        inputs.mass = 0.03 * (0.7 + 0.6 * Math.random());
         if (inputs.kind === "tabulated") inputs.table.f = inputs.table.f.map((f) => f * (1 + Math.random() / 1e4));
         if (Math.random() < 0.3) inputs.e2 = "rigid";
         const url = new URL(toAddress(inputs), document.baseURI);

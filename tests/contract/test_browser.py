@@ -5,6 +5,7 @@ from typing import Any
 
 import httpx
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Locator
 
 from tests.contract.conftest import Visit, needs_chromium
@@ -36,6 +37,20 @@ def test_example_gives_the_textbook_result(visit: Visit) -> None:
     assert document["elastic_energy"] == pytest.approx(
         [0.4 * force * a**2 / 0.01], rel=1e-12, abs=0
     )
+
+
+# Findings in the components of Swagger UI, which the page cannot change.
+OF_SWAGGER = {"color-contrast", "heading-order", "nested-interactive", "region", "select-name"}
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_page_adds_no_finding_of_axe_and_is_dark_in_dark_mode(visit: Visit, scheme: str) -> None:
+    visit.page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+    visit.page.goto(f"{visit.address}docs")
+    visit.page.locator("#operations-contact-normal").wait_for()
+    assert {each["id"] for each in Axe().run(visit.page).response["violations"]} <= OF_SWAGGER
+    style = "body => getComputedStyle(body.querySelector('#swagger-ui')).filter"
+    assert visit.page.locator("body").evaluate(style).startswith("invert") == (scheme == "dark")
 
 
 @pytest.mark.parametrize("name", ["normal", "tangential", "stress"])

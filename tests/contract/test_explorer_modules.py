@@ -12,7 +12,8 @@ import pytest
 
 from tests.conftest import Client
 from tests.contract.forged_addresses import OFFERED, forged
-from tests.contract.javascript import evaluated
+from tests.contract.javascript import EXPLORER, evaluated
+from tests.contract.page_quantities import quantities
 
 TABLES = Path(__file__).parents[1] / "data" / "tables"
 EXPECTED = json.loads((TABLES / "expected.json").read_text("utf-8"))
@@ -30,8 +31,9 @@ def test_forged_addresses_yield_offered_words_and_finite_numbers() -> None:
         assert "error" not in result, address
         table, curve = (result["inputs"].pop(name) for name in ("table", "curve"))
         assert path.fullmatch(result["inputs"].pop("path")), address
-        assert numbers.fullmatch(result["inputs"].pop("breaks", "")), address
-        for optional in ("uncertainty", "thickness"):
+        for name in ("breaks", "loads"):
+            assert numbers.fullmatch(result["inputs"].pop(name, "")), address
+        for optional in ("uncertainty", "thickness", "mass", "density", "yield1", "yield2"):
             given = result["inputs"].pop(optional, "")
             assert given == "" or math.isfinite(given), address
         held = [*result["inputs"].values()]
@@ -66,6 +68,77 @@ def test_tables_that_cannot_be_read_are_refused_with_the_line() -> None:
     assert {file: table.get("error") for file, table in read(list(refused)).items()} == refused
 
 
+def test_labels_are_those_of_the_openapi_document(client: Client) -> None:
+    document = client.get("/openapi.json").json()
+    assert (EXPLORER / "quantities.js").read_text("utf-8") == quantities(document)
+
+
+PAGE = {"ul": "mm", "ud": "µm", "uf": "N", "up": "MPa", "um": "GPa"}
+
+
+@pytest.mark.parametrize(
+    ("text", "dimension", "value"),
+    [
+        ("5", "force", 5.0),
+        ("5 kN", "force", 5e3),
+        ("0,3", "1", 0.3),
+        ("2/7", "1", 2 / 7),
+        ("1,5 µm", "length", 1.5e-6),
+        ("1.5 um", "length", 1.5e-6),
+        ("10", "length", 1e-2),
+        ("276 N/mm²", "pressure", 2.76e8),
+        ("4 g", "kg", 4e-3),
+        ("50 mJ/m²", "N/m", 0.05),
+        ("−2e-3", "force", -2e-3),
+        # Neither a thousand nor one, no length, and nothing.
+        ("1,000", "force", None),
+        ("5 kN", "length", None),
+        ("5 foo", "1", None),
+        ("", "force", None),
+        ("1e60", "force", None),
+    ],
+)
+def test_numbers_are_read_as_people_write_them(
+    text: str, dimension: str, value: float | None
+) -> None:
+    (result,) = evaluated("units.js", "module.read(...call)", [[text, dimension, PAGE]])
+    assert result == (None if value is None else pytest.approx(value, rel=1e-14, abs=0))
+
+
+@pytest.mark.parametrize(
+    ("value", "dimension", "shown"),
+    [
+        (236.34, "energy", "236.34 J"),
+        (1.0969e-4, "s", "109.69 µs"),
+        (1.6e4, "modulus", "16 kPa"),
+        (1e-4, "length", "0.1 mm"),
+        (1e-7, "length", "100 nm"),
+        (2e9, "pressure", "2000 MPa"),
+        (None, "pressure", "∞ MPa"),
+        (0, "energy", "0 J"),
+    ],
+)
+def test_numbers_are_shown_in_units_of_their_size(
+    value: float | None, dimension: str, shown: str
+) -> None:
+    result = evaluated("units.js", "module.quantity(...call)", [[value, dimension, PAGE]])
+    assert result == [shown]
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "shown"),
+    [
+        (1.0697e7, 1.23e4, "0.010697 ± 0.000012 GPa"),
+        (2.1e11, 4e9, "210.0 ± 4.0 GPa"),
+        (5e9, 3e11, "5 ± 300 GPa"),
+    ],
+)
+def test_digits_follow_the_standard_error(value: float, error: float, shown: str) -> None:
+    call = [value, error, "modulus", PAGE]
+    (result,) = evaluated("units.js", "module.uncertain(...call)", [call])
+    assert result == shown
+
+
 STEEL = {"youngs_modulus": 2.1e11, "poissons_ratio": 0.3}
 SCAN = np.linspace(0, 6e-4, 25)
 # Query, body, and its error or last warning in the units of the page.
@@ -98,7 +171,7 @@ def test_deviations_of_a_table_are_heights(client: Client) -> None:
     page = {"ul": "mm", "ud": "nm", "uf": "N", "oscillation": "tangential_force"}
     (shown,) = evaluated("messages.js", "module.inWords(...call)", [[text, page, {}]])
     assert re.search(r"deviates by \S+ nm at radius \S+ mm, and by \S+ nm in the root", shown)
-    assert "see “error by the points”" in shown
+    assert "see “Error by the points of a table”" in shown
 
 
 def test_axis_of_a_worn_ball_is_found_in_any_window_about_it() -> None:

@@ -3,13 +3,23 @@
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
+from typing import Final, Literal
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Browser
 
 from mdr_service.api import explorer
 from tests.conftest import Client, running_client
+from tests.contract.conftest import needs_chromium
 
+SCHEMES: Final[tuple[Literal["light", "dark"], ...]] = ("light", "dark")
 ROOT = Path(__file__).parents[2]
 
 
@@ -39,6 +49,30 @@ def test_pages_load_from_this_host_and_hold_no_script(site: Path) -> None:
         assert not re.search(r"<(?:script|img|link|iframe)[^>]*(?:src|href)=\"?https?:", text), page
         assert not re.search(r"<em>[^<]*[=/(][^<]*</em>", text), f"{page}: escape the * of symbols"
     assert sum(path.stat().st_size for path in site.rglob("*")) < 8e6
+
+
+@pytest.mark.long
+@needs_chromium
+def test_pages_pass_axe(site: Path, browser: Browser) -> None:
+    """Apart from the bars of the theme about code, which have no names."""
+    for path in ("", "http/", "physics/", "reference/", "notes/"):
+        for scheme in SCHEMES:
+            page = browser.new_page(color_scheme=scheme)
+            with served(site) as address:
+                page.goto(f"{address}{path}")
+                findings = Axe().run(page).response["violations"]
+            assert {each["id"] for each in findings} <= {"landmark-unique"}, (path, scheme)
+            page.close()
+
+
+@contextmanager
+def served(folder: Path) -> Iterator[str]:
+    """Serve a folder on this machine, and yield its address."""
+    handler = partial(SimpleHTTPRequestHandler, directory=str(folder))
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}/"
+        server.shutdown()
 
 
 @pytest.mark.long

@@ -28,7 +28,7 @@ EXACT = {20: 1e-6, 50: 1e-9, 200: 1e-12}
 EXACT_ROUGHER = EXACT | {200: 1e-10}
 #: Neighbours of 20 points do not tell whether they are exact: they are fitted as measured.
 UNKNOWN = {20: 1e-5}
-DECLARED, UNDECLARED = 1e-8, 3e-4
+DECLARED = 1e-8
 #: Answers that may differ by rounding errors and the conditioning of the fit alone.
 SAME = 1e-10
 
@@ -132,8 +132,10 @@ def test_undeclared_kinks(name: str) -> None:
     body = KINKED[name]
     r, f = sampled(body, 50)
     profile = Tabulated(r, f)
-    assert max(errors(profile, body)) <= UNDECLARED
     contact = solve(profile, 1.0, contact_radius=PART * body.end)
+    # The place of a kink within its step is open: by a quarter of it over the rest of the contact.
+    open_ = r[1] / 4 / (PART * body.end - body.kinks[0])
+    assert max(errors(profile, body)) <= min(0.1 * open_, float(contact.data_error))
     heights = np.asarray(profile.f(r))
     deviation = np.abs((heights - heights[0]) - (f - f[0])).max()
     if deviation > 1e-3 * float(contact.indentation_depth):
@@ -493,7 +495,8 @@ def test_few_points_of_a_flat_with_a_sharp_edge_are_accepted() -> None:
     a, b, slope = 1.1e4, r[3], (f[-1] - f[-2]) / (r[-1] - r[-2])
     contact = solve(Tabulated(r, f), 1.0, contact_radius=a)
     error = float(contact.indentation_depth) / (slope * a * np.arccos(b / a)) - 1
-    assert abs(error) <= float(contact.data_error) < 0.2
+    # The points beside the edge do not show where the flat ends.
+    assert abs(error) <= float(contact.data_error) < 0.5
 
 
 # Refusals.

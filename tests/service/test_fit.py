@@ -62,7 +62,7 @@ def test_table_and_picture(client: Client) -> None:
     assert [float(row["indentation_depth"]) for row in rows] == EXAMPLE["indentation_depth"]
     sums = [float(row["normal_force"]) + float(row["residual"]) for row in rows]
     assert sums == pytest.approx(EXAMPLE["normal_force"], abs=1e-12)
-    assert "residual" in client.post(f"{PATH}?format=svg", query()).text
+    assert "Measured less fitted" in client.post(f"{PATH}?format=svg", query()).text
 
 
 def test_work_of_adhesion_from_a_curve_of_jkr(client: Client) -> None:

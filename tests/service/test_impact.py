@@ -68,4 +68,4 @@ def test_table_and_picture(client: Client) -> None:
     for name in ("tangential_rebound_velocity", "duration"):
         assert [float(row[name]) for row in rows] == document[name]
     many = query(normal_velocity=0.3, tangential_velocity=np.linspace(0, 1, 9).tolist())
-    assert "tangential rebound velocity" in client.post(f"{PATH}?format=svg", many).text
+    assert "Tangential velocity after" in client.post(f"{PATH}?format=svg", many).text

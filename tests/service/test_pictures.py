@@ -395,26 +395,26 @@ def visible(figure: Figure) -> list[Text]:
     return [text for text in found if text.get_visible() and text.get_text().strip()]
 
 
-def test_labels_name_dimensions_or_units(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_labels_name_units_that_are_given(monkeypatch: pytest.MonkeyPatch) -> None:
     query = {name: value for name, value in STRESS.items() if name != "radius"} | {"points": 50}
     query["quantities"] = ["pressure", "shear_stress", "foundation_load"]
     for units, expected in (
         (
             None,
             [
-                "pressure\n(pressure)",
-                "shear stress\n(pressure)",
-                "foundation load\n(force/length)",
-                "radius\n(length)",
+                "Pressure p",
+                "Shear stress τ",
+                "Load q of the equivalent\nfoundation at x = r",
+                "Radius r",
             ],
         ),
         (
             Units("µm", "mN", "GPa"),
             [
-                "pressure\n(GPa)",
-                "shear stress\n(GPa)",
-                "foundation load\n(mN/µm)",
-                "radius\n(µm)",
+                "Pressure p\n(GPa)",
+                "Shear stress τ\n(GPa)",
+                "Load q of the equivalent\nfoundation at x = r\n(mN/µm)",
+                "Radius r\n(µm)",
             ],
         ),
     ):
@@ -424,7 +424,7 @@ def test_labels_name_dimensions_or_units(monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_units_of_products_are_derived(monkeypatch: pytest.MonkeyPatch) -> None:
     axes = panels(drawn("wear", WEAR, monkeypatch, Appearance(units=MILLIMETRES)))
-    assert axes[0].get_ylabel() == "worn volume\n(mm³)"
+    assert axes[0].get_ylabel() == "Worn volume V\n(mm³)"
 
 
 def words(svg: bytes) -> str:
@@ -434,8 +434,8 @@ def words(svg: bytes) -> str:
 
 def test_svg_text_is_text() -> None:
     text = words(respond("normal", json.dumps(BALL).encode(), "image/svg+xml"))
-    assert "normalforce" in text
-    assert "indentationdepth" in text
+    assert "NormalforceF_N" in text
+    assert "Indentationdepthd" in text
 
 
 PARAMETERS = {"kind": "paraboloid", "radius": "0.01", "e_star": "1e11", "normal_force": "10"}

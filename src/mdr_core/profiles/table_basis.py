@@ -10,13 +10,12 @@ from typing import Any, Final
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import BSpline, PPoly
-from scipy.linalg import solve_triangular
-from scipy.sparse.linalg import spsolve
+from scipy.sparse import csr_array
 
 from mdr_core.abel.slope_pieces import heights
 from mdr_core.profiles.table_points import TablePoints
-from mdr_core.profiles.truncated import RoundedPunch, TruncatedCone
-from mdr_core.typing import Array, Flags
+from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
+from mdr_core.typing import Array, Flags, Indices
 
 # Largest degree of the slope: the error of 20 points of a sphere is a tenth of that of a cubic.
 _DEGREE: Final = 5
@@ -24,6 +23,9 @@ _DEGREE: Final = 5
 _ROUGH: Final = 3
 # Largest number of points that are knots.
 _KNOTS: Final = 120
+# Least radius of a knot over the last one: the third derivative over a smaller step would be
+# rounding error of the heights.
+_LEAST_KNOT: Final = 1e-5
 # Points of a piece at which the sign of an interpolant is tested.
 _TESTED: Final = 8
 
@@ -42,25 +44,26 @@ class TableFit:
     """Root mean square of the deviation from the points [length]."""
     largest: tuple[float, float]
     """Largest deviation and its radius [length]."""
-    spread: tuple[BSpline, BSpline]
-    """Possible deviations of g and of its integral, as functions of a over the last radius."""
-    spread_of_jumps: tuple[tuple[float, Array], ...]
-    """Break over the last radius, and possible deviations of both jumps, shape (2, n)."""
+    spread: tuple[BSpline, BSpline, BSpline]
+    """Possible deviations of g', g and its integral, as functions of a over the last radius."""
+    spread_of_jumps: tuple[tuple[Truncated, Array], ...]
+    """Images of unit jumps over the last radius, and possible deviations of the jumps, (n,)."""
     scale: tuple[float, float]
     """Last radius and height of the table [length]."""
+    rival: float
+    """Probability of a tip of the other kind, sharp or smooth [1]."""
+    deciding: float
+    """Radius of the point without which the profile would change most [length]."""
 
     def spread_at(self, radius: Array) -> tuple[Array, Array, Array]:
         """Sizes of the errors of g, int_0^a x g' dx and int_0^a g dx that the points leave open."""
         end, height = self.scale
         a = np.ravel(radius) / end
-        depth, moment = (each(a).reshape(a.size, -1) for each in self.spread)
-        for b, jumps in self.spread_of_jumps:
-            for shape, jump in zip(
-                (TruncatedCone(b, 1.0), RoundedPunch(b, 1.0)), jumps, strict=True
-            ):
-                own = shape.g(a)
-                depth = depth + np.outer(own, jump)
-                moment = moment + np.outer(a * own - shape.force_within(a) / 2, jump)
+        depth, moment = (each(a).reshape(a.size, -1) for each in self.spread[1:])
+        for shape, jump in self.spread_of_jumps:
+            own = shape.g(a)
+            depth = depth + np.outer(own, jump)
+            moment = moment + np.outer(a * own - shape.force_within(a) / 2, jump)
         errors = depth, a[:, None] * depth - moment, moment
         units = height, end * height, end * height
         return tuple(
@@ -68,16 +71,21 @@ class TableFit:
             for unit, error in zip(units, errors, strict=True)
         )
 
-    def slope_spread(self, radius: Array) -> Array:
-        """Return possible deviations of g' at radii (m,) that the points leave open [1], (m, n)."""
-        x, (end, height) = radius / self.scale[0], self.scale
-        slopes = self.spread[0].derivative()(x).reshape(x.size, -1)
-        for b, jumps in self.spread_of_jumps:
-            for shape, jump in zip(
-                (TruncatedCone(b, 1.0), RoundedPunch(b, 1.0)), jumps, strict=True
-            ):
-                slopes = slopes + np.outer(shape.dg(x), jump)
-        return np.asarray(height / end * slopes)
+    def spread_of(self, radius: Array, kernel: Array) -> Array:
+        """Sizes of the errors of sum_j kernel_ij g'(radius_ij) that the points leave open, (m,).
+
+        Parameters
+        ----------
+        radius, kernel : radii and their factors, shape (m, n).
+        """
+        (end, height), slope = self.scale, self.spread[0]
+        x, rows = radius / end, np.arange(0, radius.size + 1, radius.shape[1])
+        sums = csr_array((kernel.ravel(), np.arange(radius.size), rows))
+        basis = BSpline.design_matrix(np.minimum(x.ravel(), 1.0), slope.t, slope.k)
+        error = (sums @ basis).toarray() @ slope.c.reshape(slope.c.shape[0], -1)
+        for shape, jump in self.spread_of_jumps:
+            error = error + np.outer((kernel * shape.dg(x)).sum(axis=1), jump)
+        return np.asarray(height / end * np.sqrt(np.square(error).sum(axis=1)))
 
 
 class TableBasis:
@@ -88,9 +96,10 @@ class TableBasis:
     """
 
     def __init__(self, points: TablePoints) -> None:
-        self.degree = k = min(max(points.x.size - 2 - 2 * len(points.breaks), 2), _DEGREE)
+        x = np.append(0.0, points.x[points.distinct & (points.x > _LEAST_KNOT)])
+        count = x.size - (points.x[0] > 0)
+        self.degree = k = min(max(count - 2 - 2 * len(points.breaks), 2), _DEGREE)
         self.order = min(_ROUGH, k)
-        x = points.x if points.x[0] == 0 else np.append(0.0, points.x)
         knots = x[np.unique(np.linspace(0, x.size - 1, min(x.size, _KNOTS)).round().astype(int))]
         if knots.size > 2 * _DEGREE:
             # Points beside which there is no knot, not the roughness, bend the slope at the end.
@@ -105,6 +114,17 @@ class TableBasis:
         jumps = [column for each in past for column in (each, each * each / 2)]
         self.heights = np.column_stack([splines[:, 1:], *jumps, np.ones_like(x), splines[:, 0]])
 
+        self.weighted = self.heights * points.weight[:, None], points.y * points.weight
+        """Heights of the columns, and of the points, times the weights of the points."""
+
+    @cached_property
+    def triangle(self) -> tuple[Array, Array]:
+        """Orthogonal columns (points, n) and triangle of the heights of `by_roughness`, weighted.
+
+        A product with heights before the triangle has no cancellation: their coefficients rise.
+        """
+        return np.linalg.qr(self.weighted[0] @ np.hstack(self.by_roughness))
+
     @cached_property
     def places(self) -> Array:
         """Coefficients of the slope x."""
@@ -118,45 +138,64 @@ class TableBasis:
         free[-2] = True
         return free
 
+    def closed(self, jumps: Flags) -> Indices:
+        """Columns of the slopes that do not jump; `jumps` at the axis and at each break."""
+        return np.append(-1, np.arange(self.size - 1, self.heights.shape[1] - 2, 2))[~jumps]
+
     def padded(self, splines: Array) -> Array:
         """Return rows over the splines (n, size) as rows over all columns."""
         rest = np.zeros((len(splines), self.heights.shape[1] - self.size))
         return np.hstack([splines[:, 1:], rest, splines[:, :1]])
 
-    def _derivative(self) -> Array:
-        """Coefficients of the rough derivative, weighted by the root of the support of its splines.
+    @cached_property
+    def _spans(self) -> list[Array]:
+        """Steps by which differences of coefficients are divided, for each derivative."""
+        k, t, size = self.degree, self.t, self.size
+        return [
+            (t[k + 1 : k + 1 + size - o] - t[o:size]) / (k - o + 1)
+            for o in range(1, self.order + 1)
+        ]
 
-        Over the splines alone.
-        """
-        k, t, rows, span = self.degree, self.t, np.eye(self.size), np.empty(0)
-        for o in range(1, self.order + 1):
-            span = (t[k + 1 : k + 1 + self.size - o] - t[o : self.size]) / (k - o + 1)
-            rows = np.diff(rows, axis=0) / span[:, None]
-        return rows * np.sqrt(span)[:, None]
-
-    @property
+    @cached_property
     def roughness(self) -> Array:
-        """Rows of which the sum of squares is the roughness."""
-        return self.padded(self._derivative())
+        """Rows of which the sum of squares is the roughness, from the end to the axis.
 
-    def by_roughness(self, *, sharp: bool) -> tuple[Array, Array]:
+        Coefficients of the rough derivative, weighted by the root of the support of its splines.
+        """
+        rows = np.eye(self.size)
+        for span in self._spans:
+            rows = np.diff(rows, axis=0) / span[:, None]
+        return self.padded(rows * np.sqrt(self._spans[-1])[:, None])[::-1]
+
+    def grading(self, start: float) -> Array:
+        """Weight of each row of a roughness that is graded from the radius `start` on."""
+        o = self.order
+        support = sliding_window_view(self.t[o:-o], self.degree - o + 2).mean(axis=1)
+        return ((support[::-1] + start) / (1 + start)) ** (o - 0.5)
+
+    @cached_property
+    def by_roughness(self) -> tuple[Array, Array]:
         """Coefficients (columns, n) of what has no roughness, and of the others.
 
-        Each of the others has one row of the roughness that is 1.
-
-        Parameters
-        ----------
-        sharp : the slope may be positive at the axis.
+        The first have jumps of the slope at the axis and at each break before them. Each of the
+        others has one row of the roughness that is 1.
         """
-        matrix = BSpline.design_matrix(self.places, self.t, self.degree)
-        powers = np.arange(0 if sharp else 1, self.order)
-        smooth = self.padded(
-            spsolve(matrix.tocsc(), self.places[:, None] ** powers).reshape(self.size, -1).T
-        )
-        explicit = np.eye(self.heights.shape[1])[self.size - 1 : -1]
-        triangle = np.vstack([np.eye(self.order, self.size), self._derivative()])
-        rough = solve_triangular(triangle, np.eye(self.size)[:, self.order :], lower=True)
-        return np.vstack([smooth, explicit]).T, self.padded(rough.T).T
+        first, *others = self._spans
+        slopes = sliding_window_view(self.t[2:-2], self.degree - 1).mean(axis=1)
+        square = np.append(0.0, np.cumsum(2 * slopes * first))
+        powers = np.stack([np.ones(self.size), self.places, square])[: self.order]
+        # Higher derivatives are zero at the end and the slope on the axis: sums of one sign.
+        rough = np.diag(1 / np.sqrt(others[-1]))
+        for span in others[::-1]:
+            rough = np.cumsum((span[:, None] * rough)[::-1], axis=0)[::-1]
+            rough = np.pad(rough, ((0, 1), (0, 0)))
+        rough = np.pad(np.cumsum(first[:, None] * rough, axis=0), ((1, 0), (0, 0)))
+        rough *= (-1.0) ** (self.order - 1)
+        smooth = self.padded(powers)
+        own = np.eye(self.heights.shape[1])[self.size - 1 : -1]
+        ordered = np.vstack([smooth[:1], own[:-1:2], smooth[1:], own[1::2], own[-1:]])
+        # The largest come first, so that the small ones keep their digits in decompositions.
+        return ordered.T, self.padded(rough.T).T[:, ::-1]
 
     def spline(self, coefficients: Array) -> BSpline:
         """Slope, or several, of coefficients over all columns."""
@@ -181,8 +220,8 @@ class TableBasis:
         """Heights less those of the points."""
         return self.heights @ coefficients - self.points.y
 
-    def fit(self, coefficients: Array, spread: Array) -> TableFit:
-        """Return the fit of coefficients; `spread` are possible deviations of them."""
+    def fit(self, coefficients: Array, spread: Array, rival: float, point: int) -> TableFit:
+        """Return the fit of coefficients. Parameters: see `TableFit`."""
         end, height = self.points.scale
         polynomials: Any = PPoly.from_spline(self.spline(coefficients).tck)
         rows = polynomials.c[::-1, np.diff(polynomials.x) > 0]
@@ -193,16 +232,20 @@ class TableBasis:
         worst = int(np.argmax(np.abs(off)))
         possible = self.spline(spread)
         many = spread.reshape(len(spread), -1)
-        possible_jumps = many[self.size - 1 : -2].reshape(-1, 2, many.shape[1])
+        shapes = [
+            kind(b, 1.0) for b in self.points.breaks for kind in (TruncatedCone, RoundedPunch)
+        ]
         return TableFit(
             self.knots * end,
             rows * powers,
             jumps.tolist(),
             height * root_mean_square(off * np.minimum(self.points.weight, 1.0)),
             (height * float(abs(off[worst])), end * float(self.points.x[worst])),
-            (possible.antiderivative(), possible.antiderivative(2)),
-            tuple(zip(self.points.breaks, possible_jumps, strict=True)),
+            (possible, possible.antiderivative(), possible.antiderivative(2)),
+            tuple(zip(shapes, many[self.size - 1 : -2], strict=True)),
             self.points.scale,
+            rival,
+            end * float(self.points.x[point]),
         )
 
 

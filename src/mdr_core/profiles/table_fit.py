@@ -1,9 +1,11 @@
-"""Equivalent profile of a table: the smoothest slope g' >= 0 that the points allow.
+"""Equivalent profile of a table: the likeliest admissible slope g' for the points.
 
 The slope is a quintic spline in x/R, with the closed images of jumps of slope and curvature at
-declared breaks, of least roughness and misfit. Heights without noise are met. For the others
-generalised cross-validation, or a stated uncertainty, decides how much of their scatter is noise. A
-non-negative least-squares problem keeps the profile admissible.
+declared breaks. Its third derivative is a random process of unknown size, and the heights deviate
+by a noise that is stated or unknown. One restricted likelihood decides on both sizes, on a process
+that grows towards the axis or not, and on jumps of the slope at the axis and at breaks. Heights
+without noise are the limit of a noise of rounding errors. A non-negative least-squares problem
+keeps the profile admissible. The error of the data is that of all likely choices together.
 
 Source: notes, §5.
 """
@@ -14,44 +16,50 @@ from typing import Final
 import numpy as np
 from scipy.linalg import qr_multiply, solve_triangular
 from scipy.optimize import nnls
+from scipy.special import stdtrit
 
 from mdr_core.doubles import ADJACENT, EPS
 from mdr_core.errors import InputError
 from mdr_core.profiles.table_basis import TableBasis, TableFit, root_mean_square
-from mdr_core.profiles.table_points import EXACT_SCATTER, TablePoints, cleaned, off_axis, scatter
-from mdr_core.typing import Array
+from mdr_core.profiles.table_points import TablePoints, cleaned, off_axis
+from mdr_core.typing import Array, Flags, Indices
 
-# Weights of the roughness that are tried, over the one that halves the smoothest bend.
-_WEIGHTS: Final = 10.0 ** np.arange(-20, 6.1, 0.5)
-# Number of these weights for heights that are met, up to 1e-6: beyond, rounding errors of the
-# roughness enter the profile, and 200 points of r^2 are met to 1e-11 instead of 1e-13.
-_WEIGHTS_OF_EXACT: Final = 29
-# Number of radii up to which cross-validation has too few points to tell noise.
-_FEW: Final = 12
-# Weight of a degree of freedom in cross-validation, against overfitting. Source: kim-gu.
-_GCV: Final = 1.2
-# Increase of the score, times the number of points, up to which a weight is plausible: of a
-# likelihood by a factor of e.
-_PLAUSIBLE: Final = 2.0
-# Factor by which a sharp tip has to lower the sum of squares that a slope without roughness leaves
-# of heights that are met, and variances of the noise by which it has to lower that of others.
-_SHARPER, _SHARPER_MEASURED = 100.0, 12.0
+# Weights of the roughness, over the one that halves the smoothest bend: to a parabola.
+_WEIGHTS: Final = 10.0 ** np.arange(-40, 6.1, 0.5)
+# Place of the smallest weight in a problem of rows, 1e-21: its root has no digits to spare.
+_LEAST: Final = 38
+# Smallest weight that is preferred among equally likely ones: its root has digits to spare.
+_RESOLVED: Final = 1e-10
+# Radius, over the first one, from which a graded roughness grows; infinity is an even one.
+_GRADINGS: Final = (np.inf, 0.1)
+# Twice the logarithm of the odds against one jump of the slope, e to 1.
+_JUMP: Final = 2.0
+# Likelihood over the largest one below which a choice has no share in the error.
+_NEGLIGIBLE: Final = 1e-3
+# Change of twice the logarithm of the likelihood that decides nothing: 5 % of the odds.
+_SAME: Final = 0.1
+# Smallest jump of the slope over the mean slope: a smaller one replaces a higher derivative's.
+_LEAST_JUMP: Final = 2e-2
+# Largest possible deviation of a slope or curvature, over the mean slope of the table.
+_LARGEST: Final = 10.0
+# Singular values of directions that the points do not show, over the largest.
+_UNSEEN: Final = 1e-8
+# Standard deviation of heights that are met, over their range: rounding errors of the fit, by
+# trial with 50 to 500 points of r^2 and r^3.
+_LEAST_SIGMA: Final = 32 * ADJACENT
+# Quantile of the error of the data: two standard deviations of a normal distribution.
+_QUANTILE: Final = 0.97725
 # Lowest g'/x, over that of the paraboloid through the last point: g increases strictly.
 _FLOOR: Final = 1e-9
 # Deviation from the points, root mean square over the height, from which the shape has no contact
 # area that is a single disc.
 _NO_DISC: Final = 0.025
-# Standard deviations in the estimate of the error of the data.
-_SPREAD: Final = 2.0
-# Standard deviation of heights that are met, over their range: rounding errors of the fit. With
-# `ADJACENT`, by trial, 50 to 500 points of r^2 and r^3 err by up to 27 times the estimate.
-_LEAST_SIGMA: Final = 32 * ADJACENT
 
 
 def fit_table(
     r: Array, f: Array, breaks: Sequence[float] = (), uncertainty: float | None = None
 ) -> TableFit:
-    """Return the smoothest admissible equivalent profile through points, or near them.
+    """Return the likeliest admissible equivalent profile of points.
 
     Parameters
     ----------
@@ -64,10 +72,7 @@ def fit_table(
     InputError : points of no body whose contact area is a single disc.
     """
     points = cleaned(r, f, breaks)
-    if uncertainty is None and (points.x.size <= _FEW or scatter(points) < EXACT_SCATTER):
-        uncertainty = 0.0
-    relative = None if uncertainty is None else uncertainty / points.scale[1]
-    found = _nearest(points, relative)
+    found = _likeliest(points, None if uncertainty is None else uncertainty / points.scale[1])
     if found.rms > _NO_DISC * points.scale[1]:
         largest, radius = found.largest
         advice = off_axis(r, f)
@@ -81,75 +86,131 @@ def fit_table(
     return found
 
 
-def _nearest(points: TablePoints, uncertainty: float | None) -> TableFit:
-    """Return the smoothest admissible fit within the uncertainty, or the scatter.
+def _likeliest(points: TablePoints, uncertainty: float | None) -> TableFit:
+    """Return the likeliest admissible fit.
 
     Parameters
     ----------
-    uncertainty : of the heights over their range; 0 to meet them, None to estimate it.
+    uncertainty : standard uncertainty of the heights over their range; None to estimate it.
     """
     basis = TableBasis(points)
-    chosen = _Spectrum(basis, uncertainty, sharp=False)
-    # A tip that lowers rounding errors is none.
-    if chosen.score > EXACT_SCATTER**2:
-        sharp = _Spectrum(basis, uncertainty, sharp=True)
-        factor = _SHARPER if uncertainty == 0 else 1 + _SHARPER_MEASURED / points.x.size
-        if sharp.score * factor < chosen.score:
-            chosen = sharp
-    coefficients = _by_rows(basis, chosen, np.full(basis.heights.shape[1], np.nan))
-    # The posterior of the coefficients. Source: wahba.
-    spread = _SPREAD * chosen.sigma * chosen.spread
+
+    def models(jumps: Flags) -> "list[_Model]":
+        return [_Model(basis, uncertainty, jumps, grading) for grading in _GRADINGS]
+
+    tried = models(np.zeros(1 + len(points.breaks), dtype=bool))
+    before, best = None, min(tried, key=lambda each: each.least)
+    while best is not before:
+        for i in np.flatnonzero(~best.jumps):
+            tried += models(best.jumps | (np.arange(best.jumps.size) == i))
+        seen = [each for each in tried if each.smallest_jump > _LEAST_JUMP]
+        before, best = best, min(seen, key=lambda each: each.least)
+    found: list[tuple[float, Array, _Model, float]] = []
+    for each in sorted(seen, key=lambda each: each.least):
+        if found and each.least >= min(score for score, *_ in found):
+            break
+        coefficients, excess = _admissible(basis, each)
+        # A deviation that no admissible shape removes is noise.
+        score = each.least + 2 * max(each.left_over, 1) * np.log(excess)
+        found.append((score, coefficients, each, excess))
+    _, coefficients, best, excess = min(found, key=lambda fit: fit[0])
+    blind = bool(points.x[0] > basis.knots[1] / 2)
+    return basis.fit(coefficients, *_spread(tried, best, excess, blind=blind))
+
+
+def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
+    """Return the coefficients of a fit with g' > 0, and its deviation over the noise, 1 or more."""
+    coefficients = _by_rows(basis, chosen, chosen.given)
     splines, jumps = coefficients[: basis.size - 1], coefficients[basis.size - 1 : -2 : 2]
     floor = _FLOOR
-    if uncertainty == 0:
+    if chosen.sigma[chosen.at] < _FLOOR:
         # A flat that is met is flat up to rounding errors, and what is smooth has no jumps.
         flat = np.abs(splines) < _FLOOR
         splines[flat] = (ADJACENT * basis.places[1:])[flat]
         jumps[np.abs(jumps) < _FLOOR] = 0.0
-        # Exact heights may leave a slope as near zero as rounding allows.
         floor = 0.0
-        coefficients[-1] *= abs(coefficients[-1]) > EXACT_SCATTER
     # Where the slope falls by a step, g' is infinite and negative beyond it.
     falls = min(jumps.min(initial=0.0), coefficients[-1]) < 0
-    if falls or basis.slopes(coefficients).min() <= floor:
-        coefficients = _not_negative(basis, chosen)
-        scatter = root_mean_square(points.weight * basis.deviation(coefficients))
-        spread = spread * max(scatter / chosen.sigma, 1.0)
-    return basis.fit(coefficients, spread)
+    if not falls and basis.slopes(coefficients).min() > floor:
+        return coefficients, 1.0
+    coefficients, off = _not_negative(basis, chosen)
+    if off > _NO_DISC:
+        # Most shapes are admissible at the likeliest weight of less noise.
+        score = np.where(chosen.sigma < _NO_DISC / 4, chosen.score, np.inf)
+        chosen.at = int(np.argmin(score))
+        coefficients, off = _not_negative(basis, chosen)
+    return coefficients, max(off / chosen.sigma[chosen.at], 1.0)
 
 
-def _not_negative(basis: TableBasis, chosen: "_Spectrum") -> Array:
-    """Return the coefficients of least misfit and roughness with g' above the floor.
+def _spread(
+    tried: "list[_Model]", best: "_Model", excess: float, *, blind: bool
+) -> tuple[Array, float, int]:
+    """Return possible deviations of the coefficients (columns, n), odds, and the deciding point.
+
+    The deviations are two standard deviations of the posterior of all models and weights, and the
+    influence of each point times the excess of its residual, when it is left out, over the
+    expected one. The odds are those of the tip, sharp or smooth, that was not chosen.
+
+    Parameters
+    ----------
+    blind : True without a point on the axis, which alone tells a sharp tip from a smooth one.
+    """
+    least = {
+        sharp: min(each.least for each in tried if not blind or each.jumps[0] == sharp)
+        for sharp in {bool(each.jumps[0]) for each in tried}
+    }
+    odds = [np.exp((least[bool(each.jumps[0])] - each.score) / 2) for each in tried]
+    total, center = sum(each.sum() for each in odds), best.mean(np.array([best.at]))
+    left_out = best.excess()
+    parts, rival = [2 * left_out], 0.0
+    if excess > 1:
+        at = np.array([best.at])
+        noisier = best.weights.searchsorted(best.weights[at] * excess**2, side="right") - 1
+        amount = np.square(excess * best.sigma[at] / best.sigma[noisier])
+        parts.append(best.posterior(noisier, amount))
+    for each, own in zip(tried, odds, strict=True):
+        rival += own.sum() / total * (each.jumps[0] != best.jumps[0])
+        likely = np.flatnonzero(own > _NEGLIGIBLE)
+        if likely.size:
+            share = own[likely] / total
+            off = each.mean(likely) - center
+            parts += [each.posterior(likely, share), 2 * off * np.sqrt(share)]
+    # Few points leave a jump open without bound, but no admissible slope is that large.
+    spread = np.hstack(parts)
+    spread *= _LARGEST / np.abs(spread).max(axis=0).clip(_LARGEST)
+    spread = np.asarray(np.linalg.qr(spread.T, mode="r")).T
+    return spread, float(rival), int(np.argmax(np.linalg.norm(left_out, axis=0)))
+
+
+def _not_negative(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
+    """Return the coefficients of least misfit and roughness with g' > 0, and their misfit.
 
     Source: lawson-hanson, Ch. 23.
     """
-    floor, weight = np.zeros(basis.heights.shape[1]), basis.points.weight
+    floor, (heights, goal) = np.zeros(basis.heights.shape[1]), basis.weighted
     floor[: basis.size - 1] = 4 * _FLOOR * basis.places[1:]
-    bound = ~basis.free
-    bound[-1] = chosen.sharp
-    system = np.vstack([basis.heights * weight[:, None], chosen.rough])
-    right = np.concatenate([basis.points.y * weight, np.zeros(len(chosen.rough))])
-    right -= system @ floor
-    found = floor
+    system = np.vstack([heights, chosen.rows])
+    right = np.append(goal, np.zeros(len(chosen.rows))) - system @ floor
+    closed = ~np.isnan(chosen.given)
+    bound, found = ~basis.free & ~closed, floor
     for with_bends in (False, True):
         # A curvature that drops at a break may bring the slope below zero: then it must not drop.
         bound[basis.size : -2 : 2] = with_bends
-        free = ~bound
-        free[-1] = False
+        free = ~bound & ~closed
         used = np.hstack([system[:, bound], system[:, free], -system[:, free]])
         factors, _ = nnls(used, right, maxiter=100 * used.shape[1])
         met = np.zeros_like(bound)
         met[bound] = factors[: bound.sum()] == 0
-        found = _by_rows(basis, chosen, np.where(met, floor, np.nan))
+        found = _by_rows(basis, chosen, np.where(met, floor, chosen.given))
         # Rounding errors may hide a bound.
         found[bound] = np.maximum(found, floor)[bound]
         if basis.slopes(found).min() > 0:
             break
-    return found
+    return found, root_mean_square(basis.points.weight * basis.deviation(found))
 
 
-def _by_rows(basis: TableBasis, chosen: "_Spectrum", given: Array) -> Array:
-    """Return the coefficients of least misfit and roughness of a spectrum, by QR.
+def _by_rows(basis: TableBasis, chosen: "_Model", given: Array) -> Array:
+    """Return the coefficients of least misfit and roughness, by QR.
 
     The largest rows come first, so that a small weight of the roughness keeps its digits.
     Source: cox-higham.
@@ -158,13 +219,12 @@ def _by_rows(basis: TableBasis, chosen: "_Spectrum", given: Array) -> Array:
     ----------
     given : coefficients that are known, NaN for the others.
     """
-    weight = basis.points.weight
-    system = np.vstack([basis.heights * weight[:, None], chosen.rough])
-    right = np.concatenate([basis.points.y * weight, np.zeros(len(chosen.rough))])
+    heights, goal = basis.weighted
+    system = np.vstack([heights, chosen.rows])
+    right = np.append(goal, np.zeros(len(chosen.rows)))
     order = np.argsort(-np.abs(system).max(axis=1), kind="stable")
     free = np.isnan(given)
-    free[-1] &= chosen.sharp
-    result = np.where(np.isnan(given), 0.0, given)
+    result = np.where(free, 0.0, given)
     right = (right - system @ result)[order]
     rotated, triangle, column = qr_multiply(system[order][:, free], right, pivoting=True)
     # Few points leave coefficients open: these are zero.
@@ -175,59 +235,115 @@ def _by_rows(basis: TableBasis, chosen: "_Spectrum", given: Array) -> Array:
     return result
 
 
-class _Spectrum:
-    """Solutions of a penalised least-squares problem for every weight of the penalty.
+class _Model:
+    """Likelihood and solutions of a penalised least-squares problem for every weight.
 
-    Slopes without roughness are separated from those that the penalty bends, so that both are as
-    accurate as the heights, whatever the weight.
+    Slopes without roughness, of which nothing is known beforehand, are separated from those that
+    are rough, so that both are as accurate as the heights, whatever the weight.
 
-    Source: elden.
+    Source: elden; wahba.
+
+    Parameters
+    ----------
+    uncertainty : standard uncertainty of the heights over their range; None to estimate it.
+    jumps : True where the slope may jump: at the axis, and at each break.
+    grading : radius over the first one from which the roughness is graded; see `_GRADINGS`.
     """
 
-    def __init__(self, basis: TableBasis, uncertainty: float | None, *, sharp: bool) -> None:
-        points, self.sharp = basis.points, sharp
-        matrix, goal = basis.heights * points.weight[:, None], points.y * points.weight
-        smooth, rough = basis.by_roughness(sharp=sharp)
-        seen, size, right = np.linalg.svd(matrix @ smooth, full_matrices=False)
-        # Few points leave directions without misfit and roughness.
-        known = size > EXACT_SCATTER * size[0]
-        seen, smooth = seen[:, known], smooth @ (right[known].T / size[known])
-        bent = matrix @ rough
-        shared = seen.T @ bent
-        base, triangle = np.linalg.qr(bent - seen @ shared)
-        left, size, right = np.linalg.svd(triangle)
-        rough = (rough - smooth @ shared) @ right.T
-        size2 = np.zeros(rough.shape[1])
-        size2[: size.size] = np.square(size)
-        fitted = seen.T @ goal
-        goal = goal - seen @ fitted
-        part = np.zeros_like(size2)
-        part[: size.size] = left.T @ (base.T @ goal)
-        rest = float(np.square(goal - base @ (base.T @ goal)).sum())
-        # Where few points leave all bends open, there is no smoothest one.
-        weights = max(size2[0], EXACT_SCATTER**2 * float(np.square(bent).sum())) * _WEIGHTS
-        left_out = weights[:, None] / np.add.outer(weights, size2)
-        misfit = np.square(left_out * part).sum(axis=1) + rest
-        freedom = fitted.size + (1 - left_out).sum(axis=1)
-        count = points.x.size
-        left_over = count - _GCV * freedom
-        with np.errstate(divide="ignore", invalid="ignore"):
-            score = np.where(left_over > 0, count * misfit / np.square(left_over), np.inf)
-        at = best = int(np.argmin(score))
-        if uncertainty is not None:
-            allowed = np.maximum(count - freedom, 1.0) * max(uncertainty, ADJACENT) ** 2
-            within = np.append(0, np.flatnonzero(misfit <= allowed))
-            at = min(int(within[-1]), best if uncertainty else _WEIGHTS_OF_EXACT - 1)
-        whole = left_out @ np.square(part) + rest
-        # Few points that are met leave cross-validation nothing to judge a tip by.
-        self.score = float(whole[-1] if uncertainty == 0 else score.min())
-        self.rough = np.sqrt(weights[at]) * basis.roughness
+    def __init__(
+        self, basis: TableBasis, uncertainty: float | None, jumps: Flags, grading: float
+    ) -> None:
+        self.basis, self.jumps, count = basis, jumps, basis.points.x.size
+        grade = basis.grading(grading * basis.knots[1]) if grading < np.inf else 1.0
+        self.graded = basis.roughness * np.reshape(grade, (-1, 1))
+        smooth, rough = basis.by_roughness
+        self.turn, triangle = basis.triangle
+        bent = triangle[:, smooth.shape[1] :] / grade
+        used = np.append(np.flatnonzero(jumps), np.arange(jumps.size, smooth.shape[1]))
+        goal = self.turn.T @ basis.weighted[1]
+        seen, sizes, right = np.linalg.svd(triangle[:, used])
+        # Few points leave directions open.
+        known = int(np.sum(sizes > _UNSEEN * sizes[0]))
+        self.seen, beside, sizes = seen[:, :known], seen[:, known:], sizes[:known]
+        self.smooth = smooth[:, used] @ (right[:known].T / sizes)
+        base, triangle = np.linalg.qr(beside.T @ bent)
+        left, self.size, right = np.linalg.svd(triangle)
+        self.left, self.left_over, kept = beside @ base @ left, count - known, self.size.size
+        turned = (rough / grade - self.smooth @ (self.seen.T @ bent)) @ right.T
+        self.rough, self.open = turned[:, :kept], turned[:, kept:]
+        self.fitted = self.seen.T @ goal
+        self.part = self.left.T @ goal
+        rest = basis.weighted[1] - self.turn @ (self.seen @ self.fitted + self.left @ self.part)
+        self.rest = rest * (kept < self.left_over)
+        self.weights = max(float(np.square(self.size).max(initial=0.0)), _UNSEEN**2) * _WEIGHTS
+        share = self.weights[:, None] / np.add.outer(self.weights, np.square(self.size))
+        whole = share @ np.square(self.part) + np.square(self.rest).sum()
+        freedom = max(self.left_over, 1)
+        self.quantile, variance = 2.0, 0 * whole + max(uncertainty or 0.0, _LEAST_SIGMA) ** 2
+        if uncertainty is None:
+            self.quantile = float(stdtrit(freedom, _QUANTILE))
+            variance = np.maximum(whole / freedom, max(basis.points.rounding, _LEAST_SIGMA) ** 2)
+        self.sigma = np.sqrt(variance)
+        self.score = (
+            whole / variance
+            + self.left_over * np.log(2 * np.pi * variance)
+            - np.log(share).sum(axis=1)
+            + 2 * np.log(sizes).sum()
+            + _JUMP * jumps.sum()
+            + variance / _NO_DISC**2
+        )
+        """-2 log of the likelihood; its last term makes a noise that is rejected unlikely."""
+        if self.left_over == 0:
+            # No point is left to tell the roughness: it is that of the unit.
+            unit = np.arange(whole.size) == np.argmin(np.abs(np.log(variance / self.weights)))
+            self.score = np.where(unit, self.score, np.inf)
+        self.least = float(self.score.min())
+        # Heights that are met tell no weight from another: a large one adds rounding errors.
+        best = whole[np.argmin(self.score)]
+        met = (variance <= _LEAST_SIGMA**2) & (whole <= best + _SAME * variance)
+        likely = np.flatnonzero((self.score <= self.least + _SAME) | met)
+        self.at = int(likely[min(int(np.sum(_WEIGHTS[likely] < _RESOLVED)), likely.size - 1)])
+
+    @property
+    def smallest_jump(self) -> float:
+        """Smallest jump of the slope over the mean slope of the table; infinite without one."""
+        jumps = self.mean(np.array([self.at]))[self.basis.closed(~self.jumps), 0]
+        return float(np.abs(jumps).min(initial=np.inf))
+
+    @property
+    def given(self) -> Array:
+        """Coefficients of the slopes that do not jump, zero, NaN for the others."""
+        given = np.full(self.basis.heights.shape[1], np.nan)
+        given[self.basis.closed(self.jumps)] = 0.0
+        return given
+
+    @property
+    def rows(self) -> Array:
         """Rows of the roughness."""
-        likely = best if uncertainty == 0 else at
-        # Of noise and roughness together. Source: wahba.
-        scatter = float(np.sqrt(whole[likely] / max(count - fitted.size, 1)))
-        self.sigma = max(uncertainty or scatter, _LEAST_SIGMA)
-        # The points hardly tell the best weight from a smaller one, which leaves more open.
-        plausible = min(likely, int(np.argmax(score <= score.min() * (1 + _PLAUSIBLE / count))))
-        self.spread = np.hstack([smooth, rough / np.sqrt(size2 + weights[plausible])])
-        """Square root of the inverse of the matrix of misfit and roughness."""
+        return np.sqrt(max(self.weights[self.at], self.weights[_LEAST])) * self.graded
+
+    def mean(self, at: Indices) -> Array:
+        """Coefficients for weights of the roughness, shape (columns, n)."""
+        bent = self.size / np.add.outer(self.weights[at], np.square(self.size)) * self.part
+        return (self.smooth @ self.fitted)[:, None] + self.rough @ bent.T
+
+    def posterior(self, at: Indices, share: Array) -> Array:
+        """Possible deviations of the coefficients, for a mixture of weights. Source: wahba."""
+        size2 = np.append(np.square(self.size), np.zeros(self.open.shape[1]))
+        variance = np.square(self.sigma[at]) * share
+        bent = np.sqrt(variance @ (1 / np.add.outer(self.weights[at], size2)))
+        smooth = np.sqrt(variance.sum()) * self.smooth
+        return self.quantile * np.hstack([smooth, np.hstack([self.rough, self.open]) * bent])
+
+    def excess(self) -> Array:
+        """Influence of each point times the excess of its residual if left out. Source: rippa."""
+        sum2 = np.square(self.size) + self.weights[self.at]
+        share = self.weights[self.at] / sum2
+        seen, left = self.turn @ self.seen, self.turn @ self.left
+        influence = self.smooth @ seen.T + self.rough * (self.size / sum2) @ left.T
+        residual = self.rest + left @ (share * self.part)
+        outside = 1 - np.square(seen).sum(axis=1) - np.square(left).sum(axis=1)
+        own = np.square(left) @ share + np.where(outside > _UNSEEN, outside, 0.0)
+        own = np.maximum(own, np.finfo(float).tiny)
+        over = np.square(residual / own) - self.sigma[self.at] ** 2 / own
+        return influence * np.sqrt(np.maximum(over, 0.0))

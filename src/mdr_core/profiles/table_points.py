@@ -1,7 +1,6 @@
 """Points of a table in normal form: sorted, merged, over their last radius and height.
 
-What the numbers themselves tell of their errors is found here: a common unit to which they are
-rounded, and a scatter that no smooth shape has.
+Numbers that are multiples of a common unit are rounded to it: their rounding error is found here.
 
 Source: notes, §5.
 """
@@ -13,19 +12,19 @@ from typing import Final
 
 import numpy as np
 
-from mdr_core.doubles import ROUNDING
+from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.errors import InputError
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Flags
 
-# Scatter of the heights, over their range, that is rounding error.
-EXACT_SCATTER: Final = 1e-8
-# Gaps between radii that are merged, over their mean spacing at equal radii.
-_SAME: Final = 1e-2
-# Neighbours on each side from which a height is predicted.
-_NEIGHBOURS: Final = 3
+# Standard error of numbers, over their range, below which their rounding needs no weights.
+_EXACT: Final = 1e-8
+# Gap of merged radii, over the last one. The mean of two heights errs by its square.
+_SAME: Final = np.sqrt(EPS)
+# Gap of radii that count as one in spacings and slopes, over the mean spacing at equal radii.
+_NEAR: Final = 1e-2
 # Rounded numbers: largest unit over the step between neighbours, and largest number of units: a
-# smaller one is below `EXACT_SCATTER`.
-_FINEST_STEP, _MOST_UNITS = 0.05, round(1 / (np.sqrt(12) * EXACT_SCATTER))
+# smaller one is below `_EXACT`.
+_FINEST_STEP, _MOST_UNITS = 0.05, round(1 / (np.sqrt(12) * _EXACT))
 # Smallest error of a rounded height, over that of most.
 _LEAST_ERROR: Final = 1e-2
 # Distance of a scan's axis from r = 0 that is reported, over the last radius.
@@ -40,38 +39,42 @@ class TablePoints:
     y: Array
     weight: Array
     """Weight of the deviation: square root of the number of points that were merged."""
+    distinct: Flags
+    """Points that are not next to the one beyond."""
     breaks: tuple[float, ...]
     scale: tuple[float, float]
     """Last radius and height [length]."""
+    rounding: float
+    """Standard error of the heights by the digits of the numbers."""
 
 
 def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
-    """Sort the points and merge those whose radii differ by less than the spacing resolves.
-
-    Radii may have any sign.
-    """
+    """Sort the points and merge those of equal radii, which may have any sign."""
     end, height = float(np.abs(r).max()), float(f.max() - f.min())
     # A point that is given twice is no second measurement.
     x, y = given = np.unique(np.stack([np.abs(r) / end, (f - f.min()) / height]), axis=1)
-    new = np.append(True, np.diff(x) > _SAME * x[1:] / x.size)
-    group = np.cumsum(new) - 1
+    group = np.cumsum(np.append(False, np.diff(x) > _SAME))
     count = np.bincount(group)
     x, y = np.bincount(group, x) / count, np.bincount(group, y) / count
+    x[0] *= x[0] > ROUNDING
     x[-1] = 1.0
     curved = np.square(x) - np.mean(np.square(x))
     if y @ curved <= 0:
         advice = off_axis(r, f) or "reverse their sign"
         raise InputError(("profile", "f"), f"the heights fall away from the axis: {advice}")
-    weight = np.sqrt(count)
+    weight, rounding, distinct = np.sqrt(count), 0.0, np.diff(x, append=2.0) > _NEAR * x / x.size
     of_radius, of_height = _rounding(given[0], given[1], x.size) if x.size > 2 else (0.0, 0.0)
-    if max(of_radius, of_height) > EXACT_SCATTER:
+    if max(of_radius, of_height) > _EXACT and distinct.sum() > 1:
         # An error of the radius is one of the height on a slope.
-        error = np.hypot(of_radius * np.gradient(y, x), of_height)
+        slope = np.interp(x, x[distinct], np.gradient(y[distinct], x[distinct]))
+        error = np.hypot(of_radius * slope, of_height)
         # On a flat an error of the radius is none of the height.
         typical = float(np.median(error[error > 0]))
         weight = weight * typical / np.maximum(error, _LEAST_ERROR * typical)
+        # Heights with all digits tell of no rounding, nor do those on a grid.
+        rounding = typical * (0 < np.sqrt(12) * of_height < _FINEST_STEP / x.size)
     scaled = tuple(b / end for b in breaks)
-    return TablePoints(x, y, weight, scaled, (end, height))
+    return TablePoints(x, y, weight, distinct, scaled, (end, height), rounding)
 
 
 def off_axis(r: Array, f: Array) -> str:
@@ -83,23 +86,6 @@ def off_axis(r: Array, f: Array) -> str:
         return ""
     reverse = "" if bend > 0 else ", and reverse the sign of the heights"
     return f"if r is the position on a scan, subtract that of the axis, near {axis:.4g}{reverse}"
-
-
-def scatter(points: TablePoints) -> float:
-    """Median deviation of the points from the polynomial through their neighbours, over its norm.
-
-    Neither smooth shapes nor a few kinks have one; noise and rounding have.
-    """
-    x, y = points.x, points.y
-    around = np.delete(np.arange(-_NEIGHBOURS, _NEIGHBOURS + 1), _NEIGHBOURS)
-    own = np.arange(_NEIGHBOURS, x.size - _NEIGHBOURS)
-    near = own[:, None] + around
-    gaps = x[near][:, :, None] - x[near][:, None, :]
-    gaps[:, range(around.size), range(around.size)] = 1.0
-    to_own = x[own, None] - x[near]
-    weights = to_own.prod(axis=1)[:, None] / (to_own * gaps.prod(axis=2))
-    off = y[own] - (weights * y[near]).sum(axis=1)
-    return float(np.median(np.abs(off) / np.sqrt(1 + np.square(weights).sum(axis=1))))
 
 
 def _rounding(x: Array, y: Array, count: int) -> tuple[float, float]:

@@ -108,18 +108,25 @@ class Tabulated(Profile):
         return cls(_radii(area), height, uncertainty=uncertainty)
 
     @classmethod
-    def from_area_coefficients(cls, coefficients: Sequence[float], largest_height: float) -> Self:
+    def from_area_coefficients(
+        cls, coefficients: Sequence[float], largest_height: float, lowest_height: float = 0.0
+    ) -> Self:
         """Return the profile of a tip with A(h) = C0 h^2 + C1 h + C2 h^(1/2) + C3 h^(1/4) + ...
 
         Source: oliver-pharr.
 
         Parameters
         ----------
-        coefficients : C0, C1, ...; Ci has the dimension length^(2 - 2^(1 - i)).
+        coefficients : C0, C1, ..., of any sign; Ci has the dimension length^(2 - 2^(1 - i)).
         largest_height : height up to which the tip is described [length].
+        lowest_height : height from which A(h) is valid; below, the tip is continued smoothly to
+            its end [length].
+
+        Raises
+        ------
+        InputError : A(h) that does not increase from zero, with the height.
         """
-        r, h = tip_points(coefficients, largest_height)
-        return cls(r, h)
+        return cls(*tip_points(coefficients, largest_height, lowest_height))
 
     @classmethod
     def from_force_depth(cls, depth: ArrayLike, force: ArrayLike, e_star: float) -> Self:
@@ -397,19 +404,39 @@ class Tabulated(Profile):
         return total / np.pi
 
 
-def tip_points(coefficients: Sequence[float], largest_height: float) -> tuple[Array, Array]:
+def tip_points(
+    coefficients: Sequence[float], largest_height: float, lowest_height: float = 0.0
+) -> tuple[Array, Array]:
     """Radii and heights of a tip. Parameters: see `Tabulated.from_area_coefficients`."""
     if not 0 < largest_height < np.inf:
         raise InputError(("profile", "largest_height"), "must be positive")
-    h = largest_height * np.linspace(0.0, 1.0, _POINTS_OF_AREA) ** 2
-    return _radii(sum(c * h**2.0 ** (1 - i) for i, c in enumerate(coefficients))), h
+    if not 0 <= lowest_height < largest_height:
+        detail = "must be positive or 0, and below the largest height"
+        raise InputError(("profile", "lowest_height"), detail)
+    range_ = largest_height - lowest_height
+    h = lowest_height + range_ * np.linspace(0.0, 1.0, _POINTS_OF_AREA) ** 2
+    # The end of the tip is known, whatever A(h) is next to it.
+    h = np.append(0.0, h[h > 0])
+    area = np.array([c * h**2.0 ** (1 - i) for i, c in enumerate(coefficients)]).sum(axis=0)
+    bad = np.flatnonzero((np.diff(area) <= 0) | (area[1:] <= 0))
+    if bad.size:
+        # At the largest height no other one is left.
+        valid = h[min(bad[-1] + 2, h.size - 1)]
+        detail = (
+            f"A(h) is not positive and increasing below the height {valid:.4g}: give a lowest "
+            "valid height of at least this, or correct the coefficients"
+        )
+        raise InputError(("profile", "lowest_height"), detail)
+    return _radii(area), h
 
 
 def _radii(area: ArrayLike) -> Array:
     """Radii of discs of these areas."""
     section = as_numbers(("profile", "area"), area)
     if np.any(section < 0):
-        raise InputError(("profile", "area"), "must not be negative")
+        first = int(np.argmax(section < 0))
+        detail = "A(h) must not be negative: leave out the heights below this one, A = "
+        raise InputError(("profile", "area", first), f"{detail}{section[first]:.4g}")
     return np.sqrt(section / np.pi)
 
 

@@ -120,10 +120,10 @@ class TorsionalContact(validity.ContactResults):
             ratio = (end / a)[..., None] ** shares
             kernel = ratio**power if power else ellipkm1(np.square((end / a)[..., None] / ratio))
             x, kernel = a[..., None] * ratio, weights * kernel
-            slopes = profile.fit.slope_spread(x.ravel()).reshape(*x.shape, -1)
-            possible = np.einsum("...n,...nq->...q", kernel, slopes)
-            whole = (kernel * profile.dg(x)).sum(axis=-1)
-            errors.append(np.sqrt(np.square(possible).sum(axis=-1)) / whole)
+            possible = profile.fit.spread_of(
+                *(each.reshape(-1, x.shape[-1]) for each in (x, kernel))
+            )
+            errors.append(possible.reshape(a.shape) / (kernel * profile.dg(x)).sum(axis=-1))
         return np.where(normal.loaded, np.max(errors, axis=0), 0.0)[()]
 
     @property

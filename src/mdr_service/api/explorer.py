@@ -55,7 +55,7 @@ class Pages(StaticFiles):
         return response
 
 
-FILES: Final = Pages(packages=[("mdr_service", "explorer"), ("plotly", "package_data")])
+FILES: Final = Pages(packages=[("mdr_service", "explorer")])
 
 
 @router.get("/")

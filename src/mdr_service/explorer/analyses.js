@@ -1,7 +1,9 @@
 // The analyses and the fields that they add to the form.
 
 import { controls, NORMAL, RIGID, TANGENTIAL } from "./inputs.js";
+import { densityOf, massOf, strengthOf } from "./materials.js";
 import { QUANTITIES } from "./quantities.js";
+import { shown } from "./units.js";
 import { solveCycle, solveFit, solveImpact, solvePress, solvePush, solveStress, solveWear } from "./results.js";
 
 const SHARE = ["Share of µF_N", "1"];
@@ -37,14 +39,27 @@ export function loadFields(inputs) {
   ];
 }
 
-function pushFields(inputs) {
-  const [label, dimension] = inputs.push === "ratio" ? SHARE : QUANTITIES[inputs.push];
-  const range = inputs.push === "ratio" ? [0, 1] : undefined;
-  return [
-    FRICTION,
-    { key: "push", label: "Tangential load", choices: [["ratio", SHARE[0]], ...choicesOf(TANGENTIAL)] },
-    { key: "amount", label, dimension, range },
-  ];
+/** Return the fields of a tangential load, which the input `key` says how to prescribe. */
+function pushFields(inputs, key = "push") {
+  const control = inputs[key];
+  const none = key === "shear" ? [["none", "none"]] : [];
+  const choice = { key, label: "Tangential load", choices: [...none, ["ratio", SHARE[0]], ...choicesOf(TANGENTIAL)] };
+  if (control === "none") return [choice];
+  const [label, dimension] = control === "ratio" ? SHARE : QUANTITIES[control];
+  const range = control === "ratio" ? [0, 1] : undefined;
+  return [choice, FRICTION, { key: "amount", label, dimension, range }];
+}
+
+/** Return an optional field whose value, if it is empty, follows from other inputs. */
+function derived(inputs, key, label, dimension, value) {
+  const text = (number) => String(Number(Number(shown(number, dimension, inputs)).toPrecision(4)));
+  return { key, label, dimension, optional: true, placeholder: value === undefined ? "needed" : text(value) };
+}
+
+/** Return the field of the load that a list of the user's own replaces, or undefined. */
+export function listedField(inputs) {
+  if (inputs.tab === "impact") return ANALYSES.impact.fields(inputs).find(({ key }) => key === "approach");
+  return loadFields(inputs).find(({ key }) => key === "load");
 }
 
 export const ANALYSES = {
@@ -57,7 +72,7 @@ export const ANALYSES = {
   push: {
     title: "Push",
     lead: "A tangential load is added: which part sticks, and how far does the body move?",
-    fields: pushFields,
+    fields: (inputs) => pushFields(inputs),
     solve: solvePush,
   },
   cycle: {
@@ -74,10 +89,11 @@ export const ANALYSES = {
   impact: {
     title: "Impact",
     lead: "The body hits the other one obliquely: how does it rebound, and how much energy does friction take?",
-    fields: () => [
+    fields: (inputs) => [
       FRICTION,
-      { key: "mass", label: "Mass m of the moving body", dimension: "kg" },
-      { key: "share", label: "Tangential mass over m (sphere 2/7)", dimension: "1", range: [0.1, 1] },
+      derived(inputs, "density", "Density of body 1", "kg/m³", densityOf(inputs)),
+      derived(inputs, "mass", "Mass m of body 1", "kg", massOf(inputs)),
+      { key: "share", label: "Tangential mass over m", dimension: "1", range: [0.1, 1] },
       { key: "approach", label: "Normal velocity", dimension: "m/s" },
       { key: "along", label: "Tangential velocity", dimension: "m/s" },
     ],
@@ -87,9 +103,10 @@ export const ANALYSES = {
     title: "Stress",
     lead: "What stresses act at the surface and beneath it, and at which load does the material yield?",
     fields: (inputs) => [
-      ...pushFields(inputs),
+      ...pushFields(inputs, "shear"),
       STRESSED,
-      { key: "yield", label: "Yield strength", dimension: "pressure" },
+      derived(inputs, `yield${inputs.body}`, `Yield strength of body ${inputs.body}`, "pressure",
+        strengthOf(inputs, inputs.body)),
     ],
     solve: solveStress,
   },

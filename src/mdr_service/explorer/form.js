@@ -1,6 +1,7 @@
 // Fields of the form: a number with its unit and a slider, a list of numbers, or a choice.
 
 import { make } from "./dom.js";
+import { HELP } from "./help.js";
 import { noNumber, read, shown, unit } from "./units.js";
 
 const SPAN = 100;
@@ -14,15 +15,18 @@ function sliderOf(field, value, reference, scale) {
   return { min: Math.log10(low), max: Math.log10(high), to: Math.log10, from: (x) => 10 ** x };
 }
 
+const describedBy = (key) => `problem-${key}${HELP[key] ? ` help-${key}` : ""}`;
+
 function fieldOf(key, ...contents) {
   const problem = make("p", { className: "problem", role: "alert", id: `problem-${key}` });
-  return make("div", { className: "field", "data-key": key }, ...contents, problem);
+  const help = HELP[key] ? [make("p", { className: "help", id: `help-${key}` }, HELP[key])] : [];
+  return make("div", { className: "field", "data-key": key }, ...contents, problem, ...help);
 }
 
 /** Show what is wrong with the value of a field, or that nothing is. */
 export function mark(element, problem) {
   element.querySelector(".problem").textContent = problem;
-  const control = element.querySelector(":scope > label > :is(input, select), :scope > textarea");
+  const control = element.querySelector(":scope > label > :is(input, select), :is(:scope, :scope > .list) > textarea");
   control?.setAttribute("aria-invalid", String(problem !== ""));
 }
 
@@ -30,14 +34,14 @@ export function mark(element, problem) {
 export function choiceRow(key, label, choices, chosen, choose) {
   const options = choices.map(([value, text]) => new Option(text, value, false, value === chosen));
   const onchange = () => choose(choices[select.selectedIndex][0]);
-  const select = make("select", { id: `field-${key}`, onchange }, ...options);
+  const select = make("select", { id: `field-${key}`, onchange, "aria-describedby": describedBy(key) }, ...options);
   return fieldOf(key, make("label", { className: "row" }, make("span", {}, label), select));
 }
 
 /** Return a row with a text and the unit of its numbers, `[label, text, unit]`. */
 function textRow(key, label, name) {
   const text = make("input", {
-    type: "text", inputMode: "decimal", id: `field-${key}`, "aria-describedby": `problem-${key}`,
+    type: "text", inputMode: "decimal", id: `field-${key}`, "aria-describedby": describedBy(key),
   });
   const row = make("label", { className: "row" },
     make("span", {}, label), text, make("span", { className: "unit" }, name));
@@ -70,7 +74,7 @@ export function numberRow(field, inputs, reference, { change, fail }) {
   });
   text.addEventListener("input", () => {
     const value = read(text.value, dimension, inputs);
-    mark(element, Number.isNaN(value) ? noNumber(text.value) : "");
+    mark(element, Number.isNaN(value) ? noNumber(text.value, dimension) : "");
     if (Number.isNaN(value)) return fail(key);
     slider.value = to(value);
     tell(value);
@@ -83,13 +87,14 @@ export function numberRow(field, inputs, reference, { change, fail }) {
 export function optionalRow(field, inputs, { change, fail }) {
   const { key, dimension, label, list } = field;
   const [element, text] = textRow(key, label, unit(dimension, inputs).name);
-  const parts = inputs[key] === "" ? [] : String(inputs[key]).split(",");
-  text.value = parts.map((part) => shown(Number(part), dimension, inputs)).join(" ");
+  const held = inputs[key] === "" ? [] : String(inputs[key]).split(",");
+  text.value = held.map((part) => shown(Number(part), dimension, inputs)).join(" ");
   text.placeholder = field.placeholder;
   text.addEventListener("input", () => {
-    const values = text.value.split(/[\s;]+/).filter(Boolean).map((part) => read(part, dimension, inputs));
-    const wrong = values.some(Number.isNaN) || (!list && values.length > 1);
-    mark(element, wrong ? `not ${list ? "numbers with blanks between them" : "a number"}` : "");
+    const parts = list ? text.value.split(/,?\s+|;/).filter(Boolean) : text.value.trim() ? [text.value] : [];
+    const values = parts.map((part) => read(part, dimension, inputs));
+    const wrong = values.some(Number.isNaN);
+    mark(element, wrong ? (list ? "not numbers with blanks between them" : noNumber(text.value, dimension)) : "");
     if (wrong) return fail(key);
     change(key, list || values.length === 0 ? values.join(",") : values[0]);
   });

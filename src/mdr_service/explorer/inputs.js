@@ -14,11 +14,11 @@ const DEFAULTS = {
   kind: "paraboloid",
   e1: 2.1e11, nu1: 0.3, e2: 2.1e11, nu2: 0.3, thickness: "",
   control: "normal_force", load: 100, w: 0,
-  mu: 0.3, push: "ratio", amount: 0.7,
+  mu: 0.3, push: "ratio", shear: "none", amount: 0.7,
   normal: "normal_force", tangential: "tangential_force",
   path: "100,0;100,20;100,-20;100,20",
-  fitted: "contact_point", mass: 0.033, share: 0.286, approach: 0.1, along: 0.05,
-  body: 1, yield: 1.5e9,
+  fitted: "contact_point", mass: "", density: "", share: 2 / 7, approach: 0.1, along: 0.05,
+  body: 1, yield1: "", yield2: "", loads: "",
   oscillation: "tangential_force", amplitude: 20, wear: 1e-13, cycles: 1e5,
   ul: "mm", ud: "µm", uf: "N", up: "MPa", um: "GPa",
 };
@@ -29,15 +29,17 @@ const FITTED = [POINT, OFFSET, ...[POINT, OFFSET].map((names) => `${names},work_
 // Input that is chosen -> its choices.
 const CHOICES = {
   tab: TABS, fitted: ["none", ...FITTED], kind: Object.keys(KINDS), push: ["ratio", ...TANGENTIAL],
+  shear: ["none", "ratio", ...TANGENTIAL],
   normal: NORMAL, tangential: TANGENTIAL, oscillation: TANGENTIAL, body: [1, 2],
   ...Object.fromEntries(Object.values(BASE_UNITS).map(({ key, factors }) => [key, Object.keys(factors)])),
 };
+const optional = (text) => (text === "" ? text : number(text));
 // Inputs that are lists of numbers, or that may be empty.
 const OTHERS = {
+  loads: (text) => (text === "" || text.split(",").every(isNumber) ? text : undefined),
   path: (text) => (pathPoints({ path: text }).every(isPoint) ? text : undefined),
   breaks: (text) => (text === "" || text.split(",").every(isNumber) ? text : undefined),
-  uncertainty: (text) => (text === "" ? text : number(text)),
-  thickness: (text) => (text === "" ? text : number(text)),
+  uncertainty: optional, thickness: optional, mass: optional, density: optional, yield1: optional, yield2: optional,
   e1: (text) => (text === RIGID ? text : number(text)),
   e2: (text) => (text === RIGID ? text : number(text)),
 };
@@ -94,12 +96,17 @@ export function fromAddress(search, hash) {
   return { inputs, unread };
 }
 
-/** Return the address of the inputs, with the fields of the chosen profile. */
+/**
+ * Return the address of the inputs, with those that differ from their defaults.
+ *
+ * Links are kept in reports: a default never changes, another name gets another default.
+ */
 export function toAddress(inputs) {
   const member = ([key, value]) =>
     `${key}=${encodeURIComponent(value).replace(/%2C/g, ",").replace(/%3B/g, ";")}`;
-  const keys = new Set([...Object.keys(DEFAULTS), ...Object.keys(KINDS[inputs.kind].fields)]);
-  const query = [...keys].map((key) => member([key, inputs[key]])).join("&");
+  const defaults = { ...DEFAULTS, ...KINDS[inputs.kind].fields };
+  const keys = Object.keys(defaults).filter((key) => ["tab", "kind"].includes(key) || inputs[key] !== defaults[key]);
+  const query = keys.map((key) => member([key, inputs[key]])).join("&");
   const held = [["table", inputs.kind === "tabulated"], ["curve", inputs.tab === "fit"]].filter(([, shown]) => shown);
   const columns = held.flatMap(([key]) => {
     const { r, f, units } = inputs[key];

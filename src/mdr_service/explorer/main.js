@@ -4,26 +4,37 @@ import { draw, redraw } from "./charts.js";
 import { make, makeButton } from "./dom.js";
 import { choiceRow, mark, numberRow, optionalRow } from "./form.js";
 import { showEditor } from "./load_path.js";
-import { MATERIALS } from "./materials.js";
+import { MATERIALS, materialOf, strengthOf } from "./materials.js";
 import { inWords } from "./messages.js";
-import { bodyFields, loadFields, ANALYSES, BODIES, THICKNESS } from "./analyses.js";
-import { copied, download, fileName, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
+import { bodyFields, listedField, loadFields, ANALYSES, BODIES, THICKNESS } from "./analyses.js";
+import { copied, download, fileName, inShownUnits, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
 import { defaultInputs, fromAddress, pathPoints, RIGID, TABS, toAddress, withKind } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
+import { showReport } from "./report.js";
 import { noteOnUnits } from "./results.js";
 import { KINDS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
+import { ownLoads } from "./own_loads.js";
 import { showSketch } from "./sketch.js";
 import { tableField } from "./table_field.js";
 import { CURVE, PROFILE } from "./table_reader.js";
-import { BASE_UNITS, format, quantity } from "./units.js";
+import { BASE_UNITS, format, quantity, uncertain } from "./units.js";
 
 const $ = (selector) => document.querySelector(selector);
 let inputs;
 let catalogue = {};
 let requests = [];
+// Error that is shown, or null.
+let problem = null;
 let last = null;
+let version = "";
 // Fields for tables, by the key of their input.
 const tables = {};
+// Analysis whose results are shown.
+let shownTab;
+// Time after which a computation is reported [ms]: shorter ones would flicker.
+const BUSY = 400;
+// Section of the user's own loads.
+let own;
 // Keys of the fields that hold no value that can be read.
 const unreadable = new Set();
 
@@ -33,8 +44,14 @@ const unreadable = new Set();
  */
 function setState(state) {
   document.body.dataset.state = state;
+  // The results of another analysis do not answer the question of this one.
+  document.body.classList.toggle("stale", shownTab !== inputs.tab);
+  $("#results").setAttribute("aria-busy", String(state === "pending"));
+  clearTimeout(setState.timer);
+  $("#busy").textContent = "";
+  if (state === "pending") setState.timer = setTimeout(() => ($("#busy").textContent = "Computing …"), BUSY);
   const outdated = state === "refused" || state === "unreadable";
-  for (const id of ["main-numbers", "numbers", "accuracy", "warnings", "charts", "take-away"]) $(`#${id}`).inert = outdated;
+  for (const id of ["main-numbers", "numbers", "accuracy", "warnings", "charts", "own", "take-away"]) $(`#${id}`).inert = outdated;
 }
 
 /** Show the case of the address. */
@@ -69,6 +86,12 @@ function isUsed(key) {
 function change(key, value) {
   unreadable.delete(key);
   inputs = { ...inputs, [key]: value };
+  // Material and values that follow from the one that has changed.
+  const body = /^(?:e|nu)([12])$/.exec(key)?.[1];
+  if (body) $(`#field-material-${body}`).value = materialOf(inputs, body) ?? "Custom";
+  for (const { key: other, optional, placeholder } of ANALYSES[inputs.tab].fields(inputs)) {
+    if (optional) $(`#field-${other}`).placeholder = placeholder;
+  }
   refresh();
 }
 
@@ -87,7 +110,7 @@ function choose(key, value) {
 function keepLoad(key, value) {
   const known = last?.known ?? {};
   if (key === "control" && known[value] > 0) inputs.load = known[value];
-  if (key === "push") {
+  if (key === "push" || key === "shear") {
     const share = known.tangential_force / (inputs.mu * known.normal_force);
     inputs.amount = value === "ratio" ? Math.min(share || 0.7, 1) : known[value] || inputs.load / 10;
   }
@@ -137,17 +160,26 @@ function profileFields() {
 
 function materialRow(i) {
   const [modulus, ratio] = [`e${i}`, `nu${i}`];
-  const current = [inputs[modulus], inputs[ratio]];
   const known = { ...MATERIALS, Rigid: [RIGID, inputs[ratio]] };
-  const custom = current[0] === RIGID ? MATERIALS.Steel : current;
-  const chosen = Object.keys(known).find((name) => String(known[name]) === String(current)) ?? "Custom";
+  // The moduli of the material that was chosen would be that material again.
+  const custom = [2e11, 0.3];
+  const chosen = inputs[modulus] === RIGID ? "Rigid" : materialOf(inputs, i) ?? "Custom";
   const choices = ["Custom", ...Object.keys(known)].map((name) => [name, name]);
   return choiceRow(`material-${i}`, BODIES[i], choices, chosen, (name) => {
     const [e, nu] = known[name] ?? custom;
-    // Stresses are those of an elastic body.
-    const body = e === RIGID && inputs.body === i ? 3 - i : inputs.body;
-    show({ ...inputs, body, [modulus]: e, [ratio]: nu });
+    // Strength and density are those of the material that is chosen.
+    const next = { ...inputs, [modulus]: e, [ratio]: nu, [`yield${i}`]: "", ...(i === 1 ? { density: "" } : {}) };
+    show({ ...next, body: weakest(next) });
   });
+}
+
+/** Return the elastic body of the lower yield strength, if both are known, else the one that is chosen. */
+function weakest(next) {
+  const rigid = [1, 2].find((i) => next[`e${i}`] === RIGID);
+  if (rigid) return 3 - rigid;
+  const [first, second] = [1, 2].map((i) => strengthOf(next, i));
+  if (first === undefined || second === undefined || first === second) return next.body;
+  return first < second ? 1 : 2;
 }
 
 function showForm() {
@@ -170,6 +202,8 @@ function showForm() {
     const selected = tab.id === `tab-${inputs.tab}`;
     tab.setAttribute("aria-selected", String(selected));
     tab.tabIndex = selected ? 0 : -1;
+    // On a narrow screen the tabs scroll.
+    if (selected) tab.parentElement.scrollLeft = tab.offsetLeft - tab.parentElement.offsetLeft - 80;
   });
   $("#lead").textContent = analysis.lead;
 }
@@ -177,8 +211,9 @@ function showForm() {
 // Results ----------------------------------------------------------------------------------------
 
 function showNumbers(numbers) {
-  const entries = () => numbers.map(([label, value, dimension]) => {
-    const text = typeof value === "string" ? value : quantity(value, dimension, inputs);
+  const entries = () => numbers.map(([label, value, dimension, error]) => {
+    const text = typeof value === "string" ? value
+      : error === undefined ? quantity(value, dimension, inputs) : uncertain(value, error, dimension, inputs);
     return make("div", {}, make("dt", {}, label), make("dd", {}, text));
   });
   $("#numbers").replaceChildren(...entries());
@@ -213,7 +248,7 @@ function showAccuracy(responses, notes) {
 // Member of a request -> keys of the inputs that set it.
 const SOURCES = {
   "/friction_coefficient": "mu", "/load": "load", "/tangential": "amount", "/oscillation": "amplitude",
-  "/wear_coefficient": "wear", "/cycles": "cycles", "/material/yield_strength": "yield", "/body": "body",
+  "/wear_coefficient": "wear", "/cycles": "cycles", "/body": "body",
   "/material/work_of_adhesion": "w", "/material/body_thickness": "thickness", "/body_thickness": "thickness",
   "/history": "path", "/normal_mass": "mass", "/tangential_mass": "share", "/normal_velocity": "approach",
   "/tangential_velocity": "along", "/indentation_depth": "curve", "/normal_force": "curve",
@@ -225,6 +260,7 @@ const SOURCES = {
 
 /** Return the key of the input that sets the member of a request at a pointer. */
 function keyOf(pointer) {
+  if (pointer === "/material/yield_strength") return `yield${inputs.body}`;
   const member = Object.keys(SOURCES).find((prefix) => `${pointer}/`.startsWith(prefix));
   if (member) return SOURCES[member];
   const [, , name, index, part] = pointer.split("/");
@@ -248,6 +284,7 @@ function placed({ pointer, detail }) {
 }
 
 function showProblem(error) {
+  problem = error;
   const box = $("#problem");
   document.querySelectorAll(".field:has(.problem)").forEach((field) => mark(field, ""));
   box.hidden = !error;
@@ -281,7 +318,7 @@ function showRequest(name) {
 
 async function saveCsv() {
   const { name, path, body } = requests.find((request) => request.name === $("#request").value);
-  download(`${fileName(name)}.csv`, await queryCsv(path, body), "text/csv");
+  download(`${fileName(name)}.csv`, inShownUnits(await queryCsv(path, body), inputs), "text/csv");
 }
 
 function showPath() {
@@ -311,6 +348,8 @@ const solve = newestWins(async () => {
     if (current.tab !== inputs.tab) return;
     requests = recorded;
     last = result;
+    shownTab = current.tab;
+    document.body.classList.remove("stale");
     if (isShown()) showProblem(null);
     showNumbers(result.numbers);
     showAccuracy(result.responses, noteOnUnits(current, result.known.contact_radius));
@@ -327,30 +366,17 @@ const solve = newestWins(async () => {
   }
 });
 
-/** Lay out the page as a report that states the inputs in words, or as a screen again. */
+/** Lay out the page as a report of inputs and results, or as a screen again. */
 function showForPrint(printing) {
   document.documentElement.classList.toggle("printing", printing);
-  const shown = document.querySelectorAll("#inputs fieldset:not(#units, [hidden]) label.row");
-  const given = [...shown].map((row) => {
-    const [control, words] = [row.querySelector("input, select"), [...row.querySelectorAll("span")]];
-    const value = control.selectedOptions?.[0].text ?? (control.value || control.placeholder);
-    return `${words[0].textContent}: ${value} ${words[1]?.textContent ?? ""}`.trim();
-  });
-  if (inputs.kind === "tabulated") given.splice(1, 0, `table of ${inputs.table.r.length} points`);
-  if (inputs.tab === "cycle") {
-    const dimensions = [inputs.normal, inputs.tangential].map((name) => QUANTITIES[name][1]);
-    const points = pathPoints(inputs).map((point) => point.map((x, i) => quantity(x, dimensions[i], inputs)).join(", "));
-    given.push(`points of the path (normal, tangential): ${points.join("; ")}`);
-  }
-  $("#given").textContent = `${ANALYSES[inputs.tab].title}. ${given.join("; ")}.`;
-  // The points of a table would fill the page.
-  $("#link").textContent = new URL(toAddress(inputs).replace(/#.*/, ""), document.baseURI).href;
+  showReport(inputs, ANALYSES[inputs.tab], version);
   if (printing) redraw();
 }
 
 function refresh() {
   clearTimeout(refresh.timer);
   sketch();
+  own.show(inputs, listedField(inputs));
   if (unreadable.size) return setState("unreadable");
   // Browsers limit how often the address may change.
   refresh.timer = setTimeout(() => history.replaceState(null, "", toAddress(inputs)), 250);
@@ -361,10 +387,13 @@ function refresh() {
 // Start ------------------------------------------------------------------------------------------
 
 function showTab(tab) {
+  // The address of the tab that is left is complete before the next step of the history.
+  if (unreadable.size === 0) history.replaceState(null, "", toAddress(inputs));
   inputs = { ...inputs, tab };
   if (tab === "wear" && inputs.control === "contact_radius") {
     inputs = { ...inputs, control: "normal_force", load: last?.known?.normal_force ?? 100 };
   }
+  history.pushState(null, "", toAddress(inputs));
   show(inputs);
 }
 
@@ -389,6 +418,12 @@ function connect() {
   for (const [key, kind] of [["table", PROFILE], ["curve", CURVE]]) {
     tables[key] = tableField($(`#${key}-fields`), kind, { change: (table) => change(key, table), fail: () => fail(key) });
   }
+  own = ownLoads($("#own"), {
+    state: () => ({ inputs, field: listedField(inputs), result: last, title: ANALYSES[inputs.tab].title }),
+    solve: (next) => ANALYSES[next.tab].solve(next, (name, path, body) => query(path, body)),
+    change: (loads) => change("loads", loads),
+    fail: () => fail("loads"),
+  });
   $("#reset").addEventListener("click", () => show({ ...defaultInputs(), tab: inputs.tab }));
   $("#request").addEventListener("change", showSource);
   $("#language").addEventListener("change", showSource);
@@ -410,4 +445,6 @@ showAddress();
 fetch("v1/profiles").then((response) => response.json()).then(({ profiles }) => {
   catalogue = Object.fromEntries(profiles.map((profile) => [profile.kind, profile]));
   if (unreadable.size === 0) showForm();
+  showProblem(problem);
 });
+fetch("health").then((response) => response.json()).then((health) => ({ version } = health));

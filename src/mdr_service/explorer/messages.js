@@ -1,7 +1,7 @@
 // Messages of the service in the words and units of the page.
 
 import { QUANTITIES } from "./quantities.js";
-import { quantity } from "./units.js";
+import { format, quantity } from "./units.js";
 
 const NUMBER = String.raw`-?\d+(?:\.\d+)?(?:e[-+]?\d+)?`;
 // Words of the service next to numbers that have a unit -> their dimension.
@@ -32,5 +32,6 @@ export function inWords(message, inputs, labels) {
     return text ? `“${text}”` : name;
   };
   // The least number on the wire says nothing in units.
-  return PATTERNS.reduce(inUnits, message.replace(/, at least 1e-\d+$/, "")).replace(NAMES, label);
+  const inLabels = PATTERNS.reduce(inUnits, message.replace(/, at least 1e-\d+$/, "")).replace(NAMES, label);
+  return inLabels.replace(/(?<![\w.·])\d+(?:\.\d+)?e[-+]?\d+/g, (number) => format(Number(number)));
 }

@@ -1,5 +1,8 @@
 // Requests to the service, and their forms for other tools.
 
+import { QUANTITIES } from "./quantities.js";
+import { times, unit, withUnit } from "./units.js";
+
 /** The service refused a request; `problem` is its problem+json. */
 export class Refusal extends Error {
   constructor(problem) {
@@ -33,6 +36,18 @@ export async function query(path, body) {
 /** Return the response to a query as CSV. */
 export async function queryCsv(path, body) {
   return (await post(path, body, "text/csv")).text();
+}
+
+/** Return the CSV of a response, whose headings are the names of quantities, in the units shown. */
+export function inShownUnits(csv, inputs) {
+  const [heading, ...rows] = csv.trim().split(/\r?\n/).map((line) => line.split(","));
+  const columns = heading.map((name) => QUANTITIES[name.split(".")[0]]);
+  const titles = heading.map((name, i) => (columns[i] ? `"${withUnit([name, columns[i][1]], inputs)}"` : name));
+  const value = (text, i) => {
+    const isNumber = columns[i] && text !== "" && Number.isFinite(Number(text));
+    return isNumber ? times(Number(text), 1 / unit(columns[i][1], inputs).factor) : text;
+  };
+  return [titles, ...rows.map((row) => row.map(value))].map((row) => `${row.join(",")}\n`).join("");
 }
 
 /**

@@ -1,7 +1,9 @@
 // The results of the analyses: requests, and the numbers and charts of their responses.
 
 import { basics, pathPoints } from "./inputs.js";
+import { massOf, strengthOf } from "./materials.js";
 import { QUANTITIES } from "./quantities.js";
+import { Refusal } from "./requests.js";
 import { inMetres, inSI } from "./shapes.js";
 import { quantity } from "./units.js";
 
@@ -16,11 +18,18 @@ async function normalForce(inputs, query) {
   return (await query("Contact", "v1/normal", { ...basics(inputs), load })).normal_force[0];
 }
 
-/** Return the members of a request about a tangential load under a normal force. */
-function pushed(inputs, force) {
-  const tangential = inputs.push === "ratio"
+function withoutFriction() {
+  const detail = "is 0, and nothing sticks: a contact without friction belongs to Press, or to Stress without tangential load";
+  return new Refusal({ title: "Invalid request", errors: [{ pointer: "/friction_coefficient", detail }] });
+}
+
+/** Return the members of a request about a tangential load, prescribed by `control`, under a normal force. */
+function pushed(inputs, force, control = inputs.push) {
+  if (control === "none") return { ...basics(inputs), load: { normal_force: force } };
+  if (inputs.mu === 0) throw withoutFriction();
+  const tangential = control === "ratio"
     ? { tangential_force: inputs.amount * inputs.mu * force }
-    : { [inputs.push]: inputs.amount };
+    : { [control]: inputs.amount };
   return { ...basics(inputs), load: { normal_force: force }, friction_coefficient: inputs.mu, tangential };
 }
 
@@ -154,7 +163,7 @@ async function solveAdhesive(inputs, query) {
 }
 
 export async function solvePress(inputs, query) {
-  if (inputs.w > 0) return solveAdhesive(inputs, query);
+  if (inputs.w !== 0) return solveAdhesive(inputs, query);
   const force = await normalForce(inputs, query);
   const forces = Array.from({ length: 60 }, (_, i) => force * ((i + 1) / 60) ** 2);
   const [curve, field] = await Promise.all([
@@ -179,13 +188,22 @@ export async function solvePress(inputs, query) {
   };
 }
 
+/** Return the twists about the axis, in place of the tangential load, until a twentieth of the radius sticks. */
+function twisted(query, { profile, material, load, friction_coefficient }, radius) {
+  const sticks = Array.from({ length: 40 }, (_, i) => radius * (1 - 0.95 * ((i + 1) / 40) ** 2));
+  const body = { profile, material, load, friction_coefficient, torsion: { stick_radius: sticks } };
+  return query("Twist", "v1/torsion", body);
+}
+
 export async function solvePush(inputs, query) {
   const force = await normalForce(inputs, query);
   const base = pushed(inputs, force);
   const limit = inputs.mu * force;
   const forces = Array.from({ length: 61 }, (_, i) => limit * (1 - (1 - i / 60) ** 2));
-  const [state, curve, field] = await Promise.all([
-    query("State", "v1/tangential", base),
+  const solved = query("State", "v1/tangential", base);
+  const [state, twist, curve, field] = await Promise.all([
+    solved,
+    solved.then(({ contact_radius: [radius] }) => twisted(query, base, radius)),
     query("Curve", "v1/tangential", { ...base, tangential: { tangential_force: forces } }),
     fieldsOf(query, "Fields", base, ["pressure", "shear_stress", "slip"]),
   ]);
@@ -195,7 +213,7 @@ export async function solvePush(inputs, query) {
   // Outside the contact, slip has no meaning.
   const slip = field.slip[0].map((value, i) => (field.radius[i] > now.contact_radius ? NaN : value));
   return {
-    responses: [state, curve, field],
+    responses: [state, twist, curve, field],
     known: now,
     numbers: [
       ...numbersOf(now, ["stick_radius", "tangential_displacement"]),
@@ -203,6 +221,7 @@ export async function solvePush(inputs, query) {
       ...numbersOf(now, [
         "contact_radius", "slip_width", "tangential_force", "tangential_stiffness", "dissipated_energy",
       ]),
+      ...numbersOf(single(twist), ["torsion_arm"]),
     ],
     charts: [
       shearStressChart("Fields", field, inputs.mu, edges),
@@ -214,6 +233,10 @@ export async function solvePush(inputs, query) {
         "Curve", "Stick radius against tangential force", curve, ["tangential_force", "stick_radius"], size,
       ),
       fieldChart("Fields", "Slip", "slip", edges, field.radius, [{ name: "slip", y: slip }]),
+      {
+        request: "Twist", title: "Twist instead: torque against rotation", x: QUANTITIES.rotation, y: QUANTITIES.torque,
+        traces: [{ name: "torque", x: [0, ...twist.rotation], y: [0, ...twist.torque] }],
+      },
     ],
   };
 }
@@ -241,11 +264,16 @@ export async function solveCycle(inputs, query) {
   // The last point where the load was that of the end closes a cycle.
   const closed = points.slice(0, -1).findLastIndex((point) => point.join() === points.at(-1).join());
   const energyThere = path.dissipated_energy[(closed + 1) * SAMPLES_PER_STEP - 1];
+  // Several loops within each other end where they began, too.
+  const loop = points.slice(Math.max(closed, 0));
+  const ways = loop.slice(1).map(([, t], i) => Math.sign(t - loop[i][1])).filter(Boolean);
+  const isOne = ways.filter((way, i) => i && way !== ways[i - 1]).length < 3;
+  const name = closed < 0 || isOne ? "Energy per cycle" : `Energy of the loops from point ${closed + 1}`;
   return {
     responses: [path, field, ...surface.map(({ response }) => response)],
     known: end,
     numbers: [
-      ["Energy per cycle", ...(closed < 0 ? ["no closed loop"] : [end.dissipated_energy - energyThere, "energy"])],
+      [name, ...(closed < 0 ? ["no closed loop"] : [end.dissipated_energy - energyThere, "energy"])],
       ...numbersOf(end, ["tangential_displacement", "dissipated_energy"]),
       ...surface.flatMap(({ numbers }) => numbers),
       ["Regime at the end", end.regime.replace("_", " ")],
@@ -268,9 +296,14 @@ export async function solveCycle(inputs, query) {
 }
 
 export async function solveImpact(inputs, query) {
+  const mass = massOf(inputs);
+  if (mass === undefined) {
+    const detail = "is needed: the shape or the material leaves it open";
+    throw new Refusal({ title: "Invalid request", errors: [{ pointer: "/normal_mass", detail }] });
+  }
   const body = {
     ...basics(inputs), friction_coefficient: inputs.mu,
-    normal_mass: inputs.mass, tangential_mass: inputs.share * inputs.mass, normal_velocity: inputs.approach,
+    normal_mass: mass, tangential_mass: inputs.share * mass, normal_velocity: inputs.approach,
   };
   // Beyond some twice this velocity every body slides throughout.
   const sliding = (2 * inputs.mu * inputs.approach) / inputs.share;
@@ -311,8 +344,10 @@ export async function solveImpact(inputs, query) {
 
 export async function solveStress(inputs, query) {
   const force = await normalForce(inputs, query);
-  const base = pushed(inputs, force);
-  const material = { ...base.material, yield_strength: inputs.yield };
+  const base = pushed(inputs, force, inputs.shear);
+  const strength = strengthOf(inputs, inputs.body);
+  const material = { ...base.material, ...(strength === undefined ? {} : { yield_strength: strength }) };
+  const sheared = inputs.shear === "none" ? [] : ["shear_stress"];
   const solved = query("Contact", "v1/normal", { ...basics(inputs), load: { normal_force: force } });
   const alongSurface = solved.then((contact) => {
     const radius = contact.contact_radius[0];
@@ -321,7 +356,7 @@ export async function solveStress(inputs, query) {
   const [contact, surface, field, map] = await Promise.all([
     solved,
     alongSurface,
-    fieldsOf(query, "Surface", base, ["pressure", "shear_stress", "normal_displacement"]),
+    fieldsOf(query, "Surface", base, ["pressure", ...sheared, "normal_displacement"]),
     query("Beneath", "v1/subsurface", {
       ...base, material, body: inputs.body, points: 61, quantities: ["von_mises"], largest: true,
     }),
@@ -330,16 +365,18 @@ export async function solveStress(inputs, query) {
   const [mises, shear] = [single(map.largest.von_mises), single(map.largest.maximum_shear)];
   const edges = [["a", now.contact_radius]];
   const displacement = [{ name: "displacement", y: field.normal_displacement[0] }];
+  const onset = (criterion) =>
+    map.yield_onset_force ? [map.yield_onset_force[criterion][0], "force"] : ["needs a yield strength"];
   return {
     responses: [contact, field, map, surface.response],
     known: now,
     numbers: [
       ["Largest von Mises stress", mises.value, "pressure"],
-      ["Yield begins at, von Mises", map.yield_onset_force.von_mises[0], "force"],
+      ["Yield begins at, von Mises", ...onset("von_mises")],
       ["Depth z of the largest stress", mises.z, "length"],
       ["x of the largest stress", mises.x, "length"],
       ["Largest shear stress", shear.value, "pressure"],
-      ["Yield begins at, Tresca", map.yield_onset_force.tresca[0], "force"],
+      ["Yield begins at, Tresca", ...onset("tresca")],
       ...surface.numbers,
       ...numbersOf(now, ["contact_radius"]),
     ],
@@ -354,7 +391,7 @@ export async function solveStress(inputs, query) {
         ],
       },
       pressureChart("Surface", field, edges),
-      shearStressChart("Surface", field, inputs.mu, edges),
+      ...sheared.map(() => shearStressChart("Surface", field, inputs.mu, edges)),
       surface.chart,
       fieldChart(
         "Surface", "Normal displacement of the surface", "normal_displacement", edges, field.radius, displacement,
@@ -378,14 +415,24 @@ export async function solveWear(inputs, query) {
   const { radius } = course;
   const limit = await query("Limit", "v1/wear", { ...body, radius });
   const [now, final] = [single(course, cycles.indexOf(inputs.cycles)), single(limit)];
-  const depth = (profile) => profile.map((f, i) => f - limit.initial_profile[i]);
+  // The curve over the cycles goes beyond those of the form, where wear may end.
+  const isWorn = now.worn_volume > 0.99 * course.worn_volume.at(-1);
+  const warnings = course.warnings.filter(({ code }) => isWorn || code !== "limit_reached");
+  // Unbounded wear has no limit, and outside a flat punch there is no profile.
+  const depth = (profile) => profile.map((f, i) => {
+    const unworn = limit.initial_profile[i];
+    return f === null || unworn === null ? NaN : f - unworn;
+  });
   const [stick, outer] = [now.stick_radius, now.contact_radius];
   const edges = [["c", stick], ["a", outer]];
   const width = outer - stick;
   // A narrow annulus fills a third of the chart.
   const range = width < 0.2 * outer ? [stick - width, outer + width] : undefined;
+  // The radii reach as far as the contact after the largest number of cycles.
+  const near = radius.at(-1) > 3 * outer ? { range: [0, 1.5 * outer] } : {};
+  const hasLimit = final.worn_volume !== null;
   return {
-    responses: [limit, course],
+    responses: [limit, { ...course, warnings }],
     known: now,
     numbers: [
       ...numbersOf(now, ["worn_volume", "contact_radius", "stick_radius"]),
@@ -398,15 +445,15 @@ export async function solveWear(inputs, query) {
       fieldChart("Evolution", "Profile", "profile", edges, radius, [
         { name: "after these cycles", y: now.profile },
         { name: "unworn", y: limit.initial_profile, role: "limit" },
-        { name: "limit", y: final.limiting_profile, role: "second" },
-      ]),
+        ...(hasLimit ? [{ name: "limit", y: final.limiting_profile, role: "second" }] : []),
+      ], near),
       fieldChart("Evolution", "Worn depth", "worn_depth", edges, radius, [
         { name: "after these cycles", y: depth(now.profile) },
-        { name: "limit", y: depth(final.limiting_profile), role: "limit" },
-      ], { range }),
+        ...(hasLimit ? [{ name: "limit", y: depth(final.limiting_profile), role: "limit" }] : []),
+      ], range ? { range } : near),
       fieldChart("Evolution", "Pressure after these cycles", "pressure", edges, radius, [
         { name: "pressure", y: now.pressure, fill: true },
-      ]),
+      ], near),
       relationChart(
         "Evolution", "Worn volume against cycles", course, ["cycles", "worn_volume"], now,
         { mark: "these cycles", logarithmic: true },
@@ -425,7 +472,7 @@ export async function solveFit(inputs, query) {
   const values = fit.map((name, i) => {
     const [label, dimension] = QUANTITIES[name];
     const [value, error] = [found[name][0], found.standard_errors[i]];
-    return [label, `${quantity(value, dimension, inputs)} ± ${quantity(error, dimension, inputs, 2)}`];
+    return [label, value, dimension, error];
   });
   // With adhesion some of the measured points are left out.
   const { indentation_depth: used } = found;

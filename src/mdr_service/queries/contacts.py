@@ -131,10 +131,15 @@ def contact_values(
     """Return the quantities of a contact by load, and which of them can be infinite."""
     values = by_load(source, query.loads)
     known = source if isinstance(source, TorsionalContact) else source.normal
-    if known.data_error is not None:
-        values["data_error"] = np.full(query.loads, known.data_error)
+    normal = source.normal
+    errors = {"data_error": known.data_error, "pressure_data_error": normal.pressure_data_error}
+    if isinstance(normal, adhesion.AdhesiveContact):
+        errors["pull_off_data_error"] = normal.pull_off_data_error
+    values |= {
+        name: np.full(query.loads, error) for name, error in errors.items() if error is not None
+    }
     singular = any(notice.code == "singular" for notice in source.warnings)
-    names = ("mean_pressure", "maximum_pressure", "normal_stiffness")
+    names = ("mean_pressure", "maximum_pressure", "normal_stiffness", "pressure_data_error")
     return values, dict.fromkeys(names, singular)
 
 

@@ -84,6 +84,10 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         fields.edge_error(contact if name == "pressure" else partial or contact, name, radius)
         for name in query.quantities
     )
+    warnings = singular(radius, values, infinite)
+    if (known := contact.pressure_data_error) is not None:
+        values["pressure_data_error"] = np.full(query.loads, known)
+        infinite["pressure_data_error"] = np.isinf(values["pressure_data_error"])
     return response(
         query,
         source,
@@ -91,7 +95,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         infinite=infinite,
         method=method,
         error=max(fields.own_error(source), integrated) + at_edges,
-        warnings=singular(radius, values, infinite),
+        warnings=warnings,
     )
 
 

@@ -26,6 +26,13 @@ _Regime = Annotated[
 ]
 _NULL = "null where infinite, with a warning `singular`"
 _UNBOUNDED = "null if wear is unbounded"
+_of_pressure = partial(
+    quantity,
+    "1",
+    "Error of pressures by the points of a table, an estimate relative to the largest pressure; "
+    "null where that is infinite",
+    default=None,
+)
 
 
 class Answer(BaseModel):
@@ -42,6 +49,19 @@ class AnswerWarning(Answer):
     value: float | None = Field(description="Size of the finding, null where it has none.")
     limit: float | None = Field(description="Limit that the value exceeds, null where it has none.")
     instead: Remedy | None = Field(description="Remedy, null where there is none.")
+
+
+class Threshold(Answer):
+    """Limit within which the model may leave out an effect; `below` or `above`, one per load."""
+
+    effect: Literal["adhesion", "slip", "thickness", "yield", "shape"] = Field(
+        description="Effect that the model leaves out."
+    )
+    quantity: str = Field(description="Quantity that is limited.")
+    below: list[float] = quantity("as the quantity", "Largest value", default=None)
+    above: list[float] = quantity("as the quantity", "Least value", default=None)
+    changes: str = Field(description="Result that changes by `holds_within` at the limit.")
+    instead: str = Field(description="Model beyond the limit, or simplest kind within it.")
 
 
 class SolvedAnswer(Answer):
@@ -68,26 +88,36 @@ class ContactAnswer(SolvedAnswer):
     indentation_depth: list[float] = _length("Indentation depth d")
     normal_force: list[float] = _force("Normal force F_N, positive in compression")
     contact_radius: list[float] = _length("Contact radius a")
-    mean_pressure: list[float | None] = _pressure(f"Mean pressure F_N/(π a²); {_NULL}")
-    maximum_pressure: list[float | None] = _pressure(f"Largest pressure p(r); {_NULL}")
+    mean_pressure: list[float | None] = _pressure(f"Mean pressure, F_N/(π a²); {_NULL}")
+    maximum_pressure: list[float | None] = _pressure(f"Maximum pressure, the largest p(r); {_NULL}")
     normal_stiffness: list[float | None] = _stiffness(
-        "Normal stiffness dF_N/dd = 2 E* a; of an adhesive contact at constant w, null at pull-off "
-        "under a prescribed depth, where it is infinite"
+        "Normal stiffness, dF_N/dd = 2 E* a; of an adhesive contact at constant w, null at "
+        "pull-off under a prescribed depth, where it is infinite"
     )
-    elastic_energy: list[float] = _energy("Elastic energy of the contact")
+    elastic_energy: list[float] = _energy("Elastic energy, of the contact")
     data_error: list[float] = _number(
-        "Estimate of the relative error of depth and force that the points of a table leave open",
+        "Error by the points of a table, an estimate relative to depth and force",
         default=None,
     )
+    pressure_data_error: list[float | None] = _of_pressure()
 
 
 class NormalAnswer(ContactAnswer):
     """One entry per load in every list; pull-off and retraction only with `work_of_adhesion`."""
 
-    pull_off_force: list[float] = _force("Lowest normal force of a contact", default=None)
-    pull_off_depth: list[float] = _length("Lowest depth of a contact", default=None)
+    pull_off_force: list[float] = _force(
+        "Pull-off force, the lowest normal force of a contact", default=None
+    )
+    pull_off_depth: list[float] = _length(
+        "Pull-off depth, the lowest depth of a contact", default=None
+    )
     retraction: list[float] = _length(
-        "Retraction Δℓ from the contact without adhesion of the same radius", default=None
+        "Retraction Δℓ by adhesion, from the contact without adhesion of the same radius",
+        default=None,
+    )
+    pull_off_data_error: list[float] = _number(
+        "Error of the pull-off by the points of a table, an estimate relative to its force",
+        default=None,
     )
 
 
@@ -96,8 +126,10 @@ class FitAnswer(SolvedAnswer):
 
     fit: list[str] = Field(description="Fitted parameters, in the order of their errors.")
     e_star: list[float] = _pressure("Effective modulus E*")
-    contact_point: list[float] = _length("Depth of first contact, in the depths of the curve")
-    force_offset: list[float] = _force("Force without contact")
+    contact_point: list[float] = _length(
+        "Contact point, the depth of first contact, in the depths of the curve"
+    )
+    force_offset: list[float] = _force("Force offset, the force without contact")
     work_of_adhesion: list[float] = quantity("force/length", "Work of adhesion, an energy per area")
     standard_errors: list[float] = quantity(
         "as the parameter", "Standard deviations of the fitted parameters"
@@ -122,10 +154,10 @@ class HistoryAnswer(SolvedAnswer):
     indentation_depth: list[float] = _length("Indentation depth d; below 0 a separation")
     normal_force: list[float] = _force("Normal force F_N, positive in compression")
     contact_radius: list[float] = _length("Contact radius a, 0 in separation")
-    tangential_displacement: list[float] = _length("Tangential displacement u_x of the bodies")
+    tangential_displacement: list[float] = _length("Tangential displacement u_x, of the bodies")
     tangential_force: list[float] = _force("Tangential force F_x")
-    dissipated_energy: list[float] = _energy("Energy dissipated by slip since the start")
-    elastic_energy: list[float] = _energy("Elastic energy of the normal load")
+    dissipated_energy: list[float] = _energy("Dissipated energy, by slip since the start")
+    elastic_energy: list[float] = _energy("Elastic energy, of the normal load")
     tangential_energy: list[float] = _energy("Elastic energy of the tangential load")
     regime: list[Regime] = Field(
         description="Slip regime: `no_contact`, `stick`, `partial_slip` or `full_slip`."
@@ -151,15 +183,15 @@ class ImpactAnswer(SolvedAnswer):
         "Velocity of separation; the motion is elastic"
     )
     tangential_rebound_velocity: list[float] = _velocity(
-        "Tangential velocity of the contact point after the impact"
+        "Tangential velocity after the impact, of the contact point"
     )
-    duration: list[float] = quantity("time", "Time of contact")
+    duration: list[float] = quantity("time", "Duration of contact")
     maximum_indentation_depth: list[float] = _length("Largest indentation depth")
     maximum_normal_force: list[float] = _force("Largest normal force")
     tangential_impulse: list[float] = quantity(
         "force*time", "∫ F_x dt, the loss of tangential momentum"
     )
-    dissipated_energy: list[float] = _energy("Energy dissipated by friction")
+    dissipated_energy: list[float] = _energy("Dissipated energy, by friction")
     regime: list[Literal["stick", "partial_slip", "full_slip"]] = Field(
         description="`full_slip` if the contact slides throughout, `stick` without tangential "
         "velocity, else `partial_slip`."
@@ -170,13 +202,13 @@ class TangentialAnswer(ContactAnswer):
     """One entry per pair of normal and tangential load in every list."""
 
     tangential_force: list[float] = _force("Tangential force F_x")
-    tangential_displacement: list[float] = _length("Tangential displacement u_x of the bodies")
+    tangential_displacement: list[float] = _length("Tangential displacement u_x, of the bodies")
     stick_radius: list[float] = _length("Stick radius c, 0 in full slip")
-    slip_width: list[float] = _length("Width a − c of the slip zone")
+    slip_width: list[float] = _length("Slip width a − c")
     tangential_stiffness: list[float] = _stiffness(
-        "Tangential stiffness dF_x/du_x = 2 G* c on further loading"
+        "Tangential stiffness, dF_x/du_x = 2 G* c on further loading"
     )
-    dissipated_energy: list[float] = _energy("Energy dissipated by slip in tangential loading")
+    dissipated_energy: list[float] = _energy("Dissipated energy, by slip in tangential loading")
     regime: _Regime
 
 
@@ -184,21 +216,23 @@ class TorsionAnswer(ContactAnswer):
     """One entry per pair of normal load and twist in every list; fields only if requested."""
 
     torque: list[float] = _energy("Torque M")
-    rotation: list[float] = _number("Rotation φ of the bodies in radians")
+    rotation: list[float] = _number("Rotation φ, of the bodies in radians")
     stick_radius: list[float] = _length("Stick radius c, 0 in full slip")
-    slip_width: list[float] = _length("Width a − c of the slip zone")
+    slip_width: list[float] = _length("Slip width a − c")
     torsional_stiffness: list[float] = _energy(
-        "Torsional stiffness dM/dφ = (16/3) G c³ on further rotation, torque per radian"
+        "Torsional stiffness, dM/dφ = (16/3) G c³ on further rotation, torque per radian"
     )
     dissipated_energy: list[float] = _energy(
-        "Energy dissipated by slip in the twist; a cycle between ±M dissipates four times as much"
+        "Dissipated energy, by slip in the twist; a cycle between ±M dissipates four times as much"
     )
-    torsion_arm: list[float] = _length("Largest torque over µ F_N, which no rotation reaches")
+    torsion_arm: list[float] = _length(
+        "Torsion arm, the largest torque over µ F_N, which no rotation reaches"
+    )
     regime: _Regime
-    radius: list[float] = _length("Radii r, requested or chosen", default=None)
+    radius: list[float] = _length("Radius r, requested or chosen", default=None)
     pressure: _Field = _pressure(f"Pressure p(r), by load and radius; {_NULL}", default=None)
     shear_stress: _Field = _pressure(
-        "Circumferential shear stress τ(r), by load and radius, positive in the direction of a "
+        "Shear stress τ(r), circumferential, by load and radius, positive in the direction of a "
         f"positive torque; {_NULL}",
         default=None,
     )
@@ -207,7 +241,7 @@ class TorsionAnswer(ContactAnswer):
 class StressAnswer(SolvedAnswer):
     """Requested fields by load and radius; the others are absent."""
 
-    radius: list[float] = _length("Radii r, requested or chosen")
+    radius: list[float] = _length("Radius r, requested or chosen")
     pressure: _Field = _pressure(f"Pressure p(r), by load and radius; {_NULL}", default=None)
     shear_stress: _Field = _pressure(
         "Shear stress τ(r), by load and radius, positive in the direction of a positive "
@@ -220,7 +254,7 @@ class StressAnswer(SolvedAnswer):
         default=None,
     )
     normal_displacement: _Field = _length(
-        "Displacement u_z(r) of the surface into the half-space, by load and radius", default=None
+        "Displacement u_z(r), of the surface into the half-space, by load and radius", default=None
     )
     foundation_load: _Field = _stiffness(
         "Load q of the equivalent foundation at x = r, by load and radius", default=None
@@ -229,6 +263,7 @@ class StressAnswer(SolvedAnswer):
         "Tangential load q_x of the equivalent foundation at x = r, by load and radius",
         default=None,
     )
+    pressure_data_error: list[float | None] = _of_pressure()
 
 
 class LargestStress(Answer):
@@ -260,8 +295,8 @@ class YieldOnsetForce(Answer):
 class SubsurfaceAnswer(SolvedAnswer):
     """Requested stresses by load, z and x; tension is positive."""
 
-    x: list[float] = _length("Coordinates along the tangential force, requested or chosen")
-    z: list[float] = _length("Depths, requested or chosen")
+    x: list[float] = _length("x, along the tangential force, requested or chosen")
+    z: list[float] = _length("z, the depth, requested or chosen")
     stress_xx: _Map = _pressure(f"Normal stress σ_xx; {_NULL}", default=None)
     stress_yy: _Map = _pressure(f"Normal stress σ_yy; {_NULL}", default=None)
     stress_zz: _Map = _pressure(f"Normal stress σ_zz; {_NULL}", default=None)
@@ -299,7 +334,7 @@ class WearAnswer(SolvedAnswer):
     normal_force: list[float] = _force("Normal force F_N in the limiting state")
     worn_volume: list[float | None] = _volume(f"Worn volume V; {_UNBOUNDED}")
     regime: _Regime
-    radius: list[float] = _length("Radii r, requested or chosen", default=None)
+    radius: list[float] = _length("Radius r, requested or chosen", default=None)
     initial_profile: list[float | None] = _length(
         f"Initial profile f₀(r) by radius, the same for all loads; {_NULL}, outside a flat punch",
         default=None,
@@ -309,7 +344,7 @@ class WearAnswer(SolvedAnswer):
         default=None,
     )
     worn_depth: _Field = _length(
-        f"Worn depth f(r) − f₀(r), by load and radius; {_UNBOUNDED}", default=None
+        f"Worn depth, f(r) − f₀(r), by load and radius; {_UNBOUNDED}", default=None
     )
     pressure: _Field = _pressure(
         f"Pressure p(r) in the limiting state, by load and radius; {_NULL}, at c", default=None
@@ -323,7 +358,7 @@ class EvolutionAnswer(SolvedAnswer):
     In full slip that of the normal force is relative to the force before wear.
     """
 
-    cycles: list[float] = _number("Numbers of cycles, as requested")
+    cycles: list[float] = _number("Number of cycles, as requested")
     worn_volume: list[float] = _volume("Worn volume V")
     indentation_depth: list[float] = _length("Indentation depth d; it grows if F_N is constant")
     normal_force: list[float] = _force("Normal force F_N; it falls if d is constant")
@@ -332,21 +367,21 @@ class EvolutionAnswer(SolvedAnswer):
         "Contact radius a, the outer radius of the worn annulus; it tends to `wear_radius` of "
         "`/v1/wear`, unless that response has the warning `path_dependent`"
     )
-    dissipated_energy: list[float] = _energy("Energy dissipated by slip in all cycles, V/K")
+    dissipated_energy: list[float] = _energy("Dissipated energy, by slip in all cycles, V/K")
     field_error_estimate: float = _number(
         "Estimated error of each field, relative to its largest value or the mean in the contact; "
         "absent without fields",
         default=None,
     )
-    radius: list[float] = _length("Radii r, requested or chosen", default=None)
+    radius: list[float] = _length("Radius r, requested or chosen", default=None)
     profile: _Field = _length(
-        "Worn profile f(r), by number of cycles and radius; it tends to `limiting_profile` of "
+        "Profile f(r), worn, by number of cycles and radius; it tends to `limiting_profile` of "
         "`/v1/wear`, unless that response has the warning `path_dependent`; "
         f"{_NULL}, outside a flat punch",
         default=None,
     )
     worn_depth: list[list[float]] = _length(
-        "Worn depth f(r) − f₀(r), by number of cycles and radius", default=None
+        "Worn depth, f(r) − f₀(r), by number of cycles and radius", default=None
     )
     pressure: _Field = _pressure(
         f"Pressure p(r), by number of cycles and radius; {_NULL}", default=None

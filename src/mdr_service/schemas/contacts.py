@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
-from mdr_core import materials
+from mdr_core import materials, thresholds
 from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.quantities import (
     ScalarOrArray,
@@ -307,9 +307,22 @@ class Query(Strict):
         return 0
 
 
+def holds_within() -> Any:
+    """Return the optional field of the tolerance of `holds_while`."""
+    return quantity(
+        "1",
+        "Relative change of a result, for which `holds_while` lists the values of what the model "
+        "leaves out: adhesion, slip, thickness, yield and shape",
+        default=None,
+        ge=thresholds.LEAST,
+        le=thresholds.MOST,
+    )
+
+
 class NormalQuery(Query):
     """Profile pressed into an elastic half-space without friction."""
 
+    holds_within: float = holds_within()
     load: Load = Field(description="Exactly one control: depth, force or contact radius.")
 
 

@@ -1,5 +1,6 @@
 """Numbers of a request: strict, finite, bounded, each with its dimension."""
 
+import re
 from typing import Annotated, Any, Final
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
@@ -45,6 +46,11 @@ def quantity(dimension: str, meaning: str, **field: Any) -> Any:
         json_schema_extra={"x-dimension": dimension},
         **field,
     )
+
+
+def heading(description: str) -> str:
+    """Return the label of a quantity: its description up to a punctuation mark or a bracket."""
+    return re.split(r"[,;:]| ?\[", description)[0].replace("(r)", "")
 
 
 def places(meaning: str) -> Any:

@@ -3,6 +3,7 @@
 Many points are joined by a line. Few are marks: what lies between them was not computed.
 """
 
+import gc
 import io
 from collections.abc import Sequence
 from typing import Any, Final
@@ -18,6 +19,8 @@ from mdr_service.serializers.panels import FRAME, LINE, Map, Panel, Units, label
 _HEADROOM: Final = 1.5
 # Usual width of a picture, and height of a panel [mm].
 _WIDTH, _PANEL = 180, 65
+# Pixels per inch of a PNG, and of maps in other formats.
+_DPI: Final = 150.0
 # Maps less square than this have unequal scales.
 _FLAT: Final = 0.2
 _STYLE: Final[dict[Any, Any]] = {
@@ -33,8 +36,6 @@ _STYLE: Final[dict[Any, Any]] = {
     # Text stays text: it can be searched, selected and read aloud.
     "svg.fonttype": "none",
     "pdf.fonttype": 42,
-    # Pixels per inch of a PNG.
-    "savefig.dpi": 150.0,
     # Equal results give identical bytes.
     "svg.hashsalt": "mdr",
 }
@@ -65,14 +66,16 @@ def draw(
     size : width and height [mm]; by default the usual size.
     units : units that the labels name.
     """
+    # The parts of a figure refer to it, so that the one before would stay beside this one.
+    gc.collect()
     usual = _WIDTH, FRAME + len(panels) * _PANEL
     width, height = size or usual
     is_small = width < usual[0] or height < usual[1]
     content = io.BytesIO()
 
     def text(quantity: str) -> str:
-        found = label(quantity, units)
-        return found.replace(" ", "\n") if is_small else found
+        # Characters of a line that fit beside a panel.
+        return label(quantity, units, width=11 if is_small else 28)
 
     with mpl.rc_context(_STYLE | {"font.size": 6.5 if is_small else 9.7}):
         figure = Figure((width / 10, height / 10, "cm"), layout="constrained")
@@ -91,7 +94,9 @@ def draw(
         if named or title:
             style: Any = {"loc": "outside upper center", "ncols": 1 if is_small else 3}
             figure.legend(list(named.values()), list(named), title=title or None, **style)
-        figure.savefig(content, format=name, metadata=_METADATA[name])
+        # However large a drawing is, its maps have the pixels of the usual width.
+        dpi = _DPI if name == "png" else _DPI * min(1.0, _WIDTH / max(width, height))
+        figure.savefig(content, format=name, metadata=_METADATA[name], dpi=dpi)
     return content.getvalue()
 
 

@@ -1,6 +1,7 @@
 """Panels of a picture: which arrays of a result are drawn over which, and their labels."""
 
 import re
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from mdr_service.schemas import answers
 from mdr_service.schemas.contacts import Axes
+from mdr_service.schemas.quantities import heading
 
 Array = NDArray[np.float64]
 # Of more loads than this an evenly spaced selection is drawn.
@@ -18,8 +20,9 @@ LINE: Final = 30
 FRAME: Final = 35
 """Height of what surrounds the panels [mm]."""
 
-_DIMENSIONS: Final = {
-    name: str(field.json_schema_extra["x-dimension"])
+# Label and dimension of each quantity.
+_QUANTITIES: Final = {
+    name: (heading(field.description or name), str(field.json_schema_extra["x-dimension"]))
     for model in vars(answers).values()
     if isinstance(model, type) and issubclass(model, answers.Answer)
     for name, field in model.model_fields.items()
@@ -175,21 +178,26 @@ def _varied(query: Any, result: Mapping[str, Any]) -> dict[str, list[float]]:
 
 def _name(control: str, value: float, units: Units | None) -> str:
     """Return the name of a load, with its unit if units are given."""
-    unit = _unit(control, units) if units and control else ""
-    return f"{_words(control)} = {value:.4g} {unit}".strip() if control else ""
+    if not control:
+        return ""
+    mantissa, _, exponent = f"{value:.4g}".partition("e")
+    if exponent and abs(int(exponent)) > 6:
+        number = f"{mantissa}·10$^{{{int(exponent)}}}$"
+    else:
+        number = np.format_float_positional(float(f"{value:.4g}"), trim="-")
+    return f"{control.replace('_', ' ')} = {number} {_unit(control, units)}".strip()
 
 
-def label(name: str, units: Units | None) -> str:
-    """Return the words of a quantity, and on another line its unit or dimension."""
+def label(name: str, units: Units | None, width: int) -> str:
+    """Return the words of a quantity in lines of a width, and below its unit if units are given."""
     unit = _unit(name, units)
-    return f"{_words(name)}\n({unit})" if unit else _words(name)
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")
+    words = textwrap.fill(_QUANTITIES[name][0], width)
+    return f"{words}\n({unit})" if unit else words
 
 
 def _unit(name: str, units: Units | None) -> str:
-    """Return the unit of a quantity, by default its dimension."""
-    text = _DIMENSIONS[name].replace("*", " ").replace("^3", "³").replace("1", "")
+    """Return the unit of a quantity, if units are given."""
+    if units is None:
+        return ""
+    text = _QUANTITIES[name][1].replace("*", " ").replace("^3", "³").replace("1", "")
     return re.sub(r"[a-z]+", lambda found: str(getattr(units, found[0], found[0])), text)

@@ -20,7 +20,7 @@ class Appearance(NamedTuple):
 
 
 AS_USUAL: Final = Appearance()
-"""Usual size, and labels that name dimensions."""
+"""Usual size, and labels without units."""
 
 
 def write(query: Any, result: Mapping[str, Any], appearance: Appearance, name: str) -> bytes:
@@ -30,7 +30,7 @@ def write(query: Any, result: Mapping[str, Any], appearance: Appearance, name: s
     ----------
     query : the request, which names the loads.
     result : all members of the response.
-    appearance : size and units, by default the usual size and dimensions.
+    appearance : size and units, by default the usual size without units.
     name : format, a key of `MEDIA_TYPES`.
 
     Raises

@@ -1,0 +1,56 @@
+// The report that is printed: inputs, results, and where its data are.
+
+import { make, makeTable } from "./dom.js";
+import { pathPoints, toAddress } from "./inputs.js";
+import { QUANTITIES } from "./quantities.js";
+import { quantity } from "./units.js";
+
+// Points of a table or curve that a report lists.
+const LISTED = 200;
+
+/** Return the rows `[label, value]` of the inputs in the form. */
+function givenRows(inputs) {
+  const shown = document.querySelectorAll("#inputs fieldset:not(#units, [hidden]) label.row");
+  const given = [...shown].map((row) => {
+    const [control, words] = [row.querySelector("input, select"), [...row.querySelectorAll("span")]];
+    const value = control.selectedOptions?.[0].text ?? (control.value || control.placeholder);
+    // In place of a number a word may stand, such as that of a half-space.
+    const unitName = /\d/.test(value) ? words[1]?.textContent ?? "" : "";
+    return [words[0].textContent, `${value} ${unitName}`.trim()];
+  });
+  if (inputs.kind === "tabulated") given.splice(1, 0, ["Table", `${inputs.table.r.length} points`]);
+  if (inputs.tab === "fit") given.push(["Measured curve", `${inputs.curve.r.length} points`]);
+  if (inputs.tab === "cycle") {
+    const dimensions = [inputs.normal, inputs.tangential].map((name) => QUANTITIES[name][1]);
+    const points = pathPoints(inputs).map((point) => point.map((x, i) => quantity(x, dimensions[i], inputs)).join(", "));
+    given.push(["Points of the path (normal, tangential)", points.join("; ")]);
+  }
+  return given;
+}
+
+/** Return the words of a report about the data of a table or a curve. */
+function dataWords(name, heads, { r, f, units }) {
+  const title = `${name} (${heads.map((head, i) => `${head} [${units[i]}]`).join(", ")})`;
+  if (r.length <= LISTED) return `${title}: ${r.map((x, i) => `${x}, ${f[i]}`).join("; ")}.`;
+  const ends = [0, r.length - 1].map((i) => `${r[i]}, ${f[i]}`).join(" to ");
+  return `${title}: ${r.length} points, ${ends}. They are in the link of the page and in the CSV of its charts, not in this report.`;
+}
+
+/** Write the report of a case, of which the page shows the results. */
+export function showReport(inputs, analysis, version) {
+  const results = [...document.querySelectorAll("#numbers div")].map((entry) => [...entry.children].map(({ textContent }) => textContent));
+  const date = new Date().toLocaleDateString("en-GB", { day: "numeric", month: "long", year: "numeric" });
+  const table = (title, rows) => make("section", {}, make("h2", {}, title), makeTable([], rows));
+  document.querySelector("#report").replaceChildren(
+    make("p", {}, `${analysis.title}: ${analysis.lead}`),
+    make("p", {}, `${date}, MDR ${version}`),
+    make("div", { className: "tables" }, table("Inputs", givenRows(inputs)), table("Results", results)));
+  const held = [
+    ...(inputs.kind === "tabulated" ? [dataWords("Table", ["r", "f"], inputs.table)] : []),
+    ...(inputs.tab === "fit" ? [dataWords("Measured curve", ["d", "F"], inputs.curve)] : []),
+  ];
+  document.querySelector("#data").textContent = held.join(" ");
+  // The points of a long table are no part of a link that anybody would type.
+  const whole = new URL(toAddress(inputs), document.baseURI).href;
+  document.querySelector("#link").textContent = whole.length < 2000 ? whole : `${whole.replace(/#.*/, "")} (the shape and the load; the data below complete it)`;
+}

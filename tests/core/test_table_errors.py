@@ -1,0 +1,188 @@
+"""The stated error of a table covers its true error, whatever its points are."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mdr_core import adhesion, fields
+from mdr_core.errors import InputError
+from mdr_core.normal import solve
+from mdr_core.profiles import (
+    Cone,
+    Hyperboloid,
+    Paraboloid,
+    Power,
+    Profile,
+    RoundedCone,
+    RoundedPunch,
+    Sphere,
+    SphericalTipCone,
+    Tabulated,
+)
+from tests.oracles import table_campaign
+from tests.oracles.table_campaign import PARTS, Table
+
+Array = np.ndarray
+#: Rounding errors of the true body, which no estimate contains.
+FLOOR = 1e-12
+
+
+def compared(table: Table) -> tuple[Array, Array, set[str]]:
+    """Larger error of depth and force, the stated one, and the codes of warnings."""
+    a = PARTS * np.abs(table.r).max()
+    a = a[a > 1.001 * table.body.first_radius]
+    profile = Tabulated(table.r, table.f, breaks=table.breaks, uncertainty=table.uncertainty)
+    found, known = (solve(each, 1.0, contact_radius=a) for each in (profile, table.body))
+    names = ("indentation_depth", "normal_force")
+    missed = [np.abs(getattr(found, name) / getattr(known, name) - 1) for name in names]
+    stated = np.maximum(np.asarray(found.data_error) + found.error_estimate, FLOOR)
+    return np.maximum(*missed), stated, {notice.code for notice in found.warnings}
+
+
+@pytest.mark.parametrize(
+    ("first", "count"), [(0, 250), pytest.param(1000, 700, marks=pytest.mark.long)]
+)
+def test_random_tables_are_covered(first: int, count: int) -> None:
+    missed, stated, silent = [], [], 0
+    for seed in range(first, first + count):
+        off, known, codes = compared(table_campaign.drawn(seed))
+        missed.append(off)
+        stated.append(known)
+        unsaid = (off > 0.05) & (off > 2 * known) & (known < 1)
+        silent += bool(unsaid.any()) and "smoothed" not in codes
+    ratio = np.concatenate(missed) / np.concatenate(stated)
+    assert np.mean(ratio <= 1) >= 0.96
+    assert np.mean(ratio <= 3) >= 0.98
+    assert silent <= max(1, count // 300)
+
+
+def test_axis_point_within_rounding_is_on_the_axis() -> None:
+    for k in range(3, 40):
+        r = np.arange(-k * 0.1, (k + 0.5) * 0.1, 0.1)
+        off, stated, _ = compared(Table(Paraboloid(1.0), "exact", r, r * r / 2, (), None))
+        assert (off <= stated).all()
+
+
+@pytest.mark.parametrize("body", [Paraboloid(2.0), Sphere(1.3), Cone(0.2), Power(1.0, 1.5)])
+@pytest.mark.parametrize("least", [1e-12, 1e-9, 1e-6, 1e-4])
+@pytest.mark.parametrize("axis", [True, False])
+def test_geometric_radii(body: Profile, least: float, *, axis: bool) -> None:
+    r = np.append([0.0] if axis else [], np.geomspace(least, 1, 60))
+    off, stated, _ = compared(Table(body, "exact", r, np.asarray(body.f(r)), (), None))
+    assert (off <= 3 * stated).all()
+    assert off.max() <= 1e-2
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_unit_changes_nothing(seed: int) -> None:
+    """Few points with a break, as of a flat and a parabola beside it."""
+    random = np.random.default_rng(seed)
+    count, end = int(random.integers(5, 13)), 10 ** random.uniform(-3, 1)
+    r = end * np.r_[0, np.sort(random.uniform(0, 1, count - 2)), 1]
+    b = float(r[random.integers(1, count - 2)])
+    f = np.square(np.maximum(r - b, 0.0)) / end
+    forces = []
+    for unit in (1.0, 1e3, 1e6, 1e-3):
+        table = Tabulated(unit * r, unit * f, breaks=(unit * b,))
+        a = unit * (b + (end - b) * np.array([0.1, 0.5, 0.9]))
+        forces.append(solve(table, 1.0, contact_radius=a).normal_force / unit**2)
+    for other in forces[1:]:
+        assert other == pytest.approx(forces[0], rel=1e-9, abs=0)
+
+
+@pytest.mark.parametrize(
+    ("body", "b"),
+    [
+        (SphericalTipCone(0.5, 0.3 * np.hypot(1, 0.5) / 0.5), 0.3),
+        (RoundedPunch(0.3, 2.0), 0.3),
+        (RoundedCone(0.5, 0.6), 0.3),
+    ],
+)
+@pytest.mark.parametrize("count", [20, 57, 199, 200])
+def test_break_of_the_curvature_shows_no_jump_of_the_slope(
+    body: Profile, b: float, count: int
+) -> None:
+    r = np.linspace(0, 1, count)
+    assert not Tabulated(r, np.asarray(body.f(r)), breaks=(b,)).infinite_pressure_radii
+
+
+def test_tip_of_a_long_table_in_even_heights_is_covered() -> None:
+    """A = 24.5 h^2 + 40 h: the first of the radii lies far beyond the tip of 2.3 nm."""
+    body = Hyperboloid(np.sqrt(np.pi / 24.5), 40 / (2 * np.pi))
+    h = np.linspace(0, 2000, 201)
+    r = np.sqrt((24.5 * h * h + 40 * h) / np.pi)
+    a = np.array([3.0, 8.0, 30.0])
+    found, known = (solve(each, 1.0, contact_radius=a) for each in (Tabulated(r, h), body))
+    missed = np.abs(found.normal_force / known.normal_force - 1)
+    assert (missed <= np.asarray(found.data_error)).all()
+
+
+def test_pressures_of_random_tables_are_covered() -> None:
+    """On the axis and at 0.3 of the contact radius, where both pressures are finite."""
+    ratios = []
+    for seed in range(80):
+        table = table_campaign.drawn(seed)
+        a = float(0.6 * np.abs(table.r).max())
+        if a <= 1.001 * table.body.first_radius:
+            continue
+        profile = Tabulated(table.r, table.f, breaks=table.breaks, uncertainty=table.uncertainty)
+        found, known = (solve(each, 1.0, contact_radius=a) for each in (profile, table.body))
+        if not np.isfinite(found.maximum_pressure):
+            continue
+        stated = max(float(np.asarray(found.pressure_data_error)), 1e-9)
+        pair = np.array([fields.pressure(each, [0.0, 0.3 * a]) for each in (found, known)])
+        pair = pair[:, np.isfinite(pair).all(axis=0)] / float(found.maximum_pressure)
+        ratios += (np.abs(pair[0] - pair[1]) / stated).tolist()
+    assert len(ratios) > 80
+    assert np.mean(np.less_equal(ratios, 1)) >= 0.93
+
+
+def test_pull_off_of_a_noisy_ball_is_covered() -> None:
+    """-(3/2) pi w R."""
+    r, covered = np.linspace(0, 1, 40), []
+    for seed in range(20):
+        noise = 1e-3 * np.random.default_rng(seed).standard_normal(r.size)
+        contact = adhesion.solve(Tabulated(r, r * r / 2 + noise), 1.0, 1e-3, contact_radius=0.5)
+        missed = abs(float(contact.pull_off_force) / (-1.5 * np.pi * 1e-3) - 1)
+        covered.append(missed <= float(np.asarray(contact.pull_off_data_error)))
+    assert np.mean(covered) >= 0.9
+
+
+def test_rival_tip_is_named() -> None:
+    """Points of a hyperboloid far beyond its tip do not show that it is smooth."""
+    r = np.linspace(0.0, 1.0, 12)
+    codes = {each.code for each in solve(Tabulated(r[1:], r[1:]), 1.0, contact_radius=0.5).warnings}
+    assert "tip" in codes
+    assert "plastic" not in codes
+    exact = solve(Tabulated(r, r), 1.0, contact_radius=0.5)
+    assert {"plastic", "tip"} & {each.code for each in exact.warnings} == {"plastic"}
+
+
+#: C0, C1, ... of a calibrated Berkovich tip [nm]: negative between 2.3 and 3.4 nm alone.
+CALIBRATED = (24.5, 2460.555732, -185073.933454, 2197392.23639, -5682984.151049, 3678718.2292)
+
+
+def test_area_function_with_negative_coefficients() -> None:
+    with pytest.raises(InputError, match=r"A\(h\) .* below the height 3\.\d") as refused:
+        Tabulated.from_area_coefficients(CALIBRATED, 400.0)
+    assert refused.value.path == ("profile", "lowest_height")
+    tip = Tabulated.from_area_coefficients(CALIBRATED, 400.0, 10.0)
+    # 100 nm deep, E* = 69.6 GPa.
+    assert 0.00195 < solve(tip, 69.6e-9, indentation_depth=100.0).normal_force < 0.00211
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_calibrated_area_functions_are_covered(seed: int) -> None:
+    """Fits of six coefficients to a Berkovich tip of a known radius, with errors of 1 %."""
+    random = np.random.default_rng(seed)
+    radius, h = random.uniform(20, 150), np.geomspace(15, 1000, 40)
+    area = (24.5 * h * h + 2 * np.pi * radius * h) * (1 + 0.01 * random.standard_normal(h.size))
+    terms = np.stack([h**2.0 ** (1 - i) for i in range(6)], axis=1)
+    coefficients = np.linalg.lstsq(terms / area[:, None], np.ones_like(h))[0]
+    tip = Tabulated.from_area_coefficients(coefficients.tolist(), 1000.0, 15.0)
+    body = Hyperboloid(float(np.sqrt(np.pi / 24.5)), radius)
+    a = np.array([150.0, 400.0])
+    found, known = (solve(each, 1.0, contact_radius=a) for each in (tip, body))
+    missed = np.abs(found.normal_force / known.normal_force - 1)
+    assert (missed <= np.asarray(found.data_error)).all()
