@@ -41,14 +41,17 @@ class Threshold(NamedTuple):
     """`adhesion`, `slip`, `thickness`, `yield` or `shape`."""
     quantity: str
     """Name of the quantity that is limited."""
-    is_least: bool
-    """True if the model holds from the value on, false if it holds up to the value."""
     value: Array
     """The limit, of each load."""
     changes: str
     """Result that changes by the tolerance at the limit."""
     instead: str
     """Model beyond the limit, or for `shape` the kind that does within it."""
+
+    @property
+    def is_least(self) -> bool:
+        """True if the model holds from the value on, false if it holds up to the value."""
+        return self.effect in {"thickness", "yield"}
 
 
 def of_contact(contact: NormalContact, tolerance: float) -> tuple[Threshold, ...]:
@@ -85,34 +88,25 @@ def of_contact(contact: NormalContact, tolerance: float) -> tuple[Threshold, ...
     flat, loaded = profile.has_no_partial_slip, contact.loaded
     with np.errstate(all="ignore"):
         arm = contact.indentation_depth if flat else a * profile.depth_slope(contact.coordinate)
-        work = e_star * np.square(tolerance * arm) / (2 * pi * a)
+        work = where(loaded, e_star * np.square(tolerance * arm) / (2 * pi * a), 0.0)
+        stick = np.maximum(a * (1 - 2 * tolerance), profile.first_radius)
+        within = 0.0 if flat else e_star * profile.force_within(np.ravel(stick)).reshape(a.shape)
+    slip, friction = contact.normal_force - within, "tangential_force / friction_coefficient"
     changes = "indentation_depth" if flat else "contact_radius"
-    found = [
-        Threshold(
-            "adhesion", "work_of_adhesion", False, where(loaded, work, 0.0), changes, "adhesion"
-        )
-    ]
-    stick = np.maximum(a * (1 - 2 * tolerance), profile.first_radius)
-    within = 0.0 if flat else e_star * profile.force_within(stick)
-    slip = contact.normal_force - within
-    names = "slip", "tangential_force / friction_coefficient", False
-    found.append(Threshold(*names, slip, "tangential_displacement", "tangential"))
     thickness = a / stiffening(tolerance, contact.material)
-    found.append(Threshold("thickness", "thickness", True, thickness, "normal_force", "layer"))
+    found = [
+        Threshold("adhesion", "work_of_adhesion", work, changes, "adhesion"),
+        Threshold("slip", friction, slip, "tangential_displacement", "tangential"),
+        Threshold("thickness", "thickness", thickness, "normal_force", "layer"),
+    ]
+    depth = "indentation_depth"
     if isinstance(profile, Paraboloid):
         ratios = () if contact.material is None else contact.material.poissons_ratios
-        shear = _shear_below(min(ratios, default=ASSUMED_RATIO))
-        limit = 2 * shear * contact.maximum_pressure
-        found.append(
-            Threshold(
-                "yield", "yield_strength", True, limit, "indentation_depth", "elastic_plastic"
-            )
-        )
+        least = 2 * _shear_below(min(ratios, default=ASSUMED_RATIO)) * contact.maximum_pressure
+        found.append(Threshold("yield", "yield_strength", least, depth, "elastic_plastic"))
     if isinstance(profile, Sphere):
         radius = full(_like_paraboloid(tolerance), a) * profile.radius
-        found.append(
-            Threshold("shape", "contact_radius", False, radius, "indentation_depth", "paraboloid")
-        )
+        found.append(Threshold("shape", "contact_radius", radius, depth, "paraboloid"))
     return tuple(found)
 
 

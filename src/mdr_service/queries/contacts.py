@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from mdr_core import adhesion, layer, profiles, subsurface, validity
+from mdr_core import adhesion, layer, profiles, subsurface, thresholds, validity
 from mdr_core import normal as normal_contact
 from mdr_core import tangential as tangential_contact
 from mdr_core.elementwise import every
@@ -122,7 +122,26 @@ def paired(name: str, given: Choice, load: Choice) -> Arguments:
 def contact_result(query: NormalQuery, source: NormalContact | TangentialContact) -> Result:
     """Return the quantities of a contact under its loads, with or without friction."""
     values, infinite = contact_values(query, source)
-    return response(query, source, values, infinite=infinite)
+    return response(query, source, values, unchecked=holds_while(query, source), infinite=infinite)
+
+
+def holds_while(query: NormalQuery | StressQuery, source: Contact) -> Result:
+    """Return the member `holds_while` of a response, empty unless it is requested."""
+    if not query.has("holds_within"):
+        return {}
+    if isinstance(source, LoadHistory):
+        raise InputError(("holds_within",), "needs a load in place of a history")
+    found = [
+        {
+            "effect": limit.effect,
+            "quantity": limit.quantity,
+            "above" if limit.is_least else "below": np.full(query.loads, limit.value).tolist(),
+            "changes": limit.changes,
+            "instead": limit.instead,
+        }
+        for limit in thresholds.of_contact(source.normal, query.holds_within)
+    ]
+    return {"holds_while": found}
 
 
 def contact_values(

@@ -16,6 +16,7 @@ from mdr_core.validation import TIGHTEST
 from mdr_service.queries.contacts import (
     Contact,
     Result,
+    holds_while,
     require_one_of,
     response,
     singular,
@@ -92,6 +93,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         query,
         source,
         {"radius": radius} | values,
+        unchecked=holds_while(query, source),
         infinite=infinite,
         method=method,
         error=max(fields.own_error(source), integrated) + at_edges,

@@ -17,6 +17,7 @@ _stiffness = partial(quantity, "force/length")
 _energy = partial(quantity, "force*length")
 _velocity = partial(quantity, "length/time")
 _volume = partial(quantity, "length^3")
+_limit = partial(quantity, "as the quantity")
 
 _Field = list[list[float | None]]
 _Map = list[list[list[float | None]]]
@@ -58,10 +59,16 @@ class Threshold(Answer):
         description="Effect that the model leaves out."
     )
     quantity: str = Field(description="Quantity that is limited.")
-    below: list[float] = quantity("as the quantity", "Largest value", default=None)
-    above: list[float] = quantity("as the quantity", "Least value", default=None)
+    below: list[float] = _limit("Largest value", default=None)
+    above: list[float] = _limit("Least value", default=None)
     changes: str = Field(description="Result that changes by `holds_within` at the limit.")
     instead: str = Field(description="Model beyond the limit, or simplest kind within it.")
+
+
+_HOLDS_WHILE = left_out(
+    "With `holds_within`: values of what the model leaves out, up to or from which leaving it out "
+    "changes a result by no more than that."
+)
 
 
 class SolvedAnswer(Answer):
@@ -95,6 +102,7 @@ class ContactAnswer(SolvedAnswer):
         "pull-off under a prescribed depth, where it is infinite"
     )
     elastic_energy: list[float] = _energy("Elastic energy, of the contact")
+    holds_while: list[Threshold] = _HOLDS_WHILE
     data_error: list[float] = _number(
         "Error by the points of a table, an estimate relative to depth and force",
         default=None,
@@ -241,6 +249,7 @@ class TorsionAnswer(ContactAnswer):
 class StressAnswer(SolvedAnswer):
     """Requested fields by load and radius; the others are absent."""
 
+    holds_while: list[Threshold] = _HOLDS_WHILE
     radius: list[float] = _length("Radius r, requested or chosen")
     pressure: _Field = _pressure(f"Pressure p(r), by load and radius; {_NULL}", default=None)
     shear_stress: _Field = _pressure(
