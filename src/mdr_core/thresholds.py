@@ -24,11 +24,9 @@ from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Paraboloid, Sphere
 from mdr_core.typing import Array
-from mdr_core.validation import single
+from mdr_core.validation import LEAST_CHANGE, MOST_CHANGE, single
 from mdr_core.validity import ASSUMED_RATIO, stiffening
 
-LEAST, MOST = 1e-4, 0.1
-"""Bounds of the tolerance: above it the thresholds, of first order, are off by a third."""
 # Depths z/a between which the largest shear stress below a paraboloid lies: at 0.38 for nu = 0, and
 # at 0.54 for nu = 1/2. Source: johnson, section 4.2.
 _DEPTHS: Final = np.linspace(0.37, 0.55, 60)
@@ -77,8 +75,9 @@ def of_contact(contact: NormalContact, tolerance: float) -> tuple[Threshold, ...
     >>> round(float(slip.value) / (4e-3 / 3), 4)
     0.0588
     """
-    if not LEAST <= single(("holds_within",), tolerance) <= MOST:
-        raise InputError(("holds_within",), f"must lie from {LEAST} to {MOST}")
+    if not LEAST_CHANGE <= single(("holds_within",), tolerance) <= MOST_CHANGE:
+        detail = f"must lie from {LEAST_CHANGE} to {MOST_CHANGE}"
+        raise InputError(("holds_within",), detail)
     if type(contact) is not NormalContact:
         detail = (
             "needs a contact of half-spaces without adhesion: the limits are those of its results"

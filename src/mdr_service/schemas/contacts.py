@@ -7,7 +7,8 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
-from mdr_core import materials, thresholds
+from mdr_core import materials
+from mdr_core.validation import LEAST_CHANGE, MOST_CHANGE
 from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.quantities import (
     ScalarOrArray,
@@ -314,8 +315,8 @@ def holds_within() -> Any:
         "Relative change of a result, for which `holds_while` lists the values of what the model "
         "leaves out: adhesion, slip, thickness, yield and shape",
         default=None,
-        ge=thresholds.LEAST,
-        le=thresholds.MOST,
+        ge=LEAST_CHANGE,
+        le=MOST_CHANGE,
     )
 
 
