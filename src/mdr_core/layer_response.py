@@ -1,4 +1,4 @@
-"""Response of an elastic layer on a rigid base to a wave of pressure. Source: hayes; notes, §19."""
+"""Response of an elastic layer on a rigid base to a wave of pressure. Source: hayes; manual, Contact with a layer."""
 
 import numpy as np
 

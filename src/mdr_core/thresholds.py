@@ -9,7 +9,7 @@ Each follows from the contact radius a, g'(a) and F_N(a) to first order in the t
 * yield: Y = 2 tau_max below a paraboloid (Tresca);
 * shape: the contact radius at which a paraboloid of the same curvature replaces a sphere.
 
-Source: notes, §8.
+Source: manual, Which model does my case need?
 """
 
 from functools import lru_cache

@@ -53,7 +53,7 @@ _WALL: Final = 3.0
 # Error of the force on a bonded incompressible layer over the slope at the edge and (a/h)^2, its
 # levelling off with (a/h)^2, and the power of nu/(1 - nu) by which it falls with compressibility:
 # -0.003, -0.083 and -0.88 at a/h 0.1, 0.5 and 2 for nu = 1/2, and -0.12 at 2 for nu = 0.3.
-# Source: notes, §19, finite elements.
+# Source: manual, Contact with a layer, finite elements.
 _SQUEEZED, _LEVELS, _COMPRESSIBLE = 0.32, 0.114, 2.5
 # Relative change of forces at a given displacement by transverse slip, and of displacements under
 # forces up to 0.998 of full slip, over (nu/(4 - 2 nu))^2. Source: notes, §8.
@@ -335,7 +335,7 @@ def _on_layer(contact: LoadedContact, layer: Layer) -> Array:
     """Relative error of the force on a layer by the neglected radial displacement [1].
 
     Over the slope at the edge it is 0.3 (a/h)^2 on thin bonded incompressible layers, and far less
-    on compressible ones. Source: notes, §19, finite elements.
+    on compressible ones. Source: manual, Contact with a layer, finite elements.
     """
     part = contact.contact_radius / layer.thickness
     nu = ASSUMED_RATIO if layer.poissons_ratio is None else max(layer.poissons_ratio, 0.0)

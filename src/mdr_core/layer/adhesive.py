@@ -1,4 +1,4 @@
-"""Adhesive states of a contact with an elastic layer. Source: notes, §13 and §19."""
+"""Adhesive states of a contact with an elastic layer. Source: notes, §13; manual, Contact with a layer."""
 
 from functools import cached_property
 from typing import Any, Final

@@ -10,7 +10,7 @@ where s is the share of the layer in the compliance. A flat punch has q = E* d q
 and S = dF_N/dd = 2 E* int_0^a q1 dx. v and q1 are even polynomials in x, and the integral over the
 profile consists of the moments of g' with Chebyshev's polynomials.
 
-Source: lebedev; hayes; notes, §19.
+Source: lebedev; hayes; manual, Contact with a layer.
 """
 
 from math import ceil, pi
