@@ -1,4 +1,7 @@
-"""Response of an elastic layer on a rigid base to a wave of pressure. Source: hayes; manual, Contact with a layer."""
+"""Response of an elastic layer on a rigid base to a wave of pressure.
+
+Source: hayes; manual, Contact with a layer.
+"""
 
 import numpy as np
 

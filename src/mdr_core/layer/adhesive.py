@@ -1,4 +1,7 @@
-"""Adhesive states of a contact with an elastic layer. Source: notes, §13; manual, Contact with a layer."""
+"""Adhesive states of a contact with an elastic layer.
+
+Source: notes, §13; manual, Contact with a layer.
+"""
 
 from functools import cached_property
 from typing import Any, Final

@@ -1,4 +1,7 @@
-"""Results of a contact with an elastic layer. Source: lebedev; hayes; manual, Contact with a layer."""
+"""Results of a contact with an elastic layer.
+
+Source: lebedev; hayes; manual, Contact with a layer.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
