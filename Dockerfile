@@ -1,9 +1,7 @@
 # Base images are pinned by tag.
-FROM python:3.11.15-bookworm AS build
+FROM python:3.11.15-trixie AS build
 
-# Strip debug symbols, which are most of a compiled module. (CFLAGS would replace Python's own flags.)
-ENV LDFLAGS=-Wl,--strip-debug \
-    PIP_DISABLE_PIP_VERSION_CHECK=1 \
+ENV PIP_DISABLE_PIP_VERSION_CHECK=1 \
     PIP_NO_CACHE_DIR=1
 RUN ["python", "-m", "venv", "/app"]
 WORKDIR /build
@@ -23,7 +21,7 @@ RUN /app/bin/pip wheel --no-deps --no-build-isolation --wheel-dir dist . \
 
 
 # The manual, by tools that the service does not need.
-FROM python:3.11.15-bookworm AS manual
+FROM python:3.11.15-trixie AS manual
 
 ENV PIP_DISABLE_PIP_VERSION_CHECK=1 \
     PIP_NO_CACHE_DIR=1
@@ -38,7 +36,7 @@ COPY src ./src
 RUN ["/tools/bin/mkdocs", "build", "--site-dir", "/manual"]
 
 
-FROM python:3.11.15-slim-bookworm
+FROM python:3.11.15-slim-trixie
 
 COPY --from=build /app /app
 COPY --from=manual /manual /app/share/mdr/manual

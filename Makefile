@@ -117,6 +117,8 @@ openapi: .venv/development
 
 # The source distribution, a wheel for this Python, and one of Python text alone for the others, each
 # built from the unpacked source distribution: a folder that has been built in may hold old modules.
+# Their files have the time of the commit, so that the same commit gives the same bytes.
+dist: export SOURCE_DATE_EPOCH ?= $(shell git log -1 --format=%ct)
 dist: .venv/development
 	$(BIN)/python -m build --no-isolation
 	MDR_PLAIN=1 $(BIN)/python -m build --no-isolation

@@ -18,6 +18,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 # Set before NumPy is loaded: BLAS threads would compete for the cores.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
@@ -30,7 +31,7 @@ from substitutions import Slope, both_roots_removed, one_root_removed
 
 from mdr_core import fields, tangential
 from mdr_core.normal import NormalContact, solve
-from mdr_core.profiles import Paraboloid, RoundedPunch, Tabulated
+from mdr_core.profiles import Paraboloid, Power, PowerTerm, Profile, RoundedPunch, Series, Tabulated
 
 FRESH, KEPT = "fresh pages", "kept memory"
 _KEEP = {"MALLOC_MMAP_THRESHOLD_": str(1 << 30), "MALLOC_TRIM_THRESHOLD_": str(1 << 30)}
@@ -287,6 +288,19 @@ def mindlin_sweep(state: str) -> list[measure.Row]:
     ]
 
 
+def power_and_series(state: str) -> list[measure.Row]:
+    """Every quantity of one load with friction, under a power and under a sum of two."""
+    power = Power(0.5, 3.3)
+    series = Series((PowerTerm(0.5, 2.0), PowerTerm(0.1, 4.0)))
+
+    def query(profile: Profile) -> dict[str, Any]:
+        contact = solve(profile, 1.0, normal_force=0.01)
+        return tangential.solve(contact, 0.9, 0.3, tangential_force=0.002).computed()
+
+    rounds = measure.interleaved(lambda: query(power), lambda: query(series), 2.0)
+    return [measure.row("one load with friction, power / series", state, rounds, "<= 1")]
+
+
 MEASUREMENTS = {
     run.__name__: run
     for run in (
@@ -296,6 +310,7 @@ MEASUREMENTS = {
         hertz_sweep,
         punch_traction,
         mindlin_sweep,
+        power_and_series,
     )
 }
 

@@ -156,7 +156,7 @@ def main() -> None:
         rows[-1] += (int((ratios > 1).sum()),)
         shown = np.clip(ratios, LOWEST, None)
         spread = place + 0.6 * (np.random.default_rng(0).random(len(shown)) - 0.5)
-        axis.plot(shown, spread, ".", color=GREY, markersize=1.5, alpha=0.4)
+        axis.plot(shown, spread, ".", color=GREY, markersize=1.5, alpha=0.4, rasterized=True)
         axis.plot(np.clip([middle, most], LOWEST, None), [place, place], "-", color=MDR_COLOR, lw=3)
         axis.plot([max(largest, LOWEST)], [place], "|", color=MDR_COLOR, markersize=12)
     axis.axvline(1.0, color="black", lw=1)

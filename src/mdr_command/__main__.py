@@ -7,6 +7,7 @@ from collections.abc import Container, Sequence
 from importlib import import_module
 from importlib.metadata import version
 from io import TextIOWrapper
+from pathlib import Path
 from typing import Final, NamedTuple
 
 from mdr_command import ExitStatus
@@ -134,6 +135,8 @@ def parser_of(loaded: Container[str]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="mdr", description=_ABOUT)
     # That of the core, whose import takes a third of a second.
     shown = f"mdr {version('mdr-contact')}"
+    if not any(Path(__file__).parents[1].glob("mdr_core/history/slip_kernel.*.so")):
+        shown += " (without its compiled module: load histories take about 100 times longer)"
     parser.add_argument("--version", action="version", version=shown, help="print it and exit")
     commands = parser.add_subparsers(required=True, metavar="command", title="commands")
     for name, command in COMMANDS.items():

@@ -31,6 +31,7 @@ from mdr_core import (
     wear,
 )
 from mdr_core.errors import AccuracyError, DefectError, InputError, MDRError, Notice
+from mdr_core.history.slip_kernel import __file__ as _kernel
 from mdr_core.materials import RIGID, Body, Layer, Material, from_bodies
 from mdr_core.profiles import (
     KINDS,
@@ -55,8 +56,11 @@ from mdr_core.profiles import (
 from mdr_core.table_reader import read_table
 
 __version__: Final = "0.1.0"
+COMPILED: Final = not _kernel.endswith(".py")
+"""True if the loop of load histories is compiled: without, they take about 100 times longer."""
 
 __all__ = [
+    "COMPILED",
     "KINDS",
     "RIGID",
     "AccuracyError",

@@ -1,7 +1,7 @@
 """Largest pressure and shear stress of a contact, searched where no closed form exists."""
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 from math import comb, inf
 from typing import Final
 
@@ -10,9 +10,9 @@ from scipy.interpolate import BPoly
 
 from mdr_core.abel.annulus import Annulus, whole
 from mdr_core.doubles import ADJACENT
-from mdr_core.elementwise import full, in_blocks, is_number, some, where
+from mdr_core.elementwise import full, in_blocks, is_number, number, some, where
 from mdr_core.inversion import MAX_STEPS
-from mdr_core.profiles import Paraboloid, Profile, RoundedPunch
+from mdr_core.profiles import Paraboloid, Power, Profile, RoundedPunch
 from mdr_core.typing import Array, Flags, Indices
 
 # A stress at a radius, given as a contact coordinate, under the load of that index; all (m,).
@@ -61,6 +61,11 @@ def largest_stress(
         root = edge if slip is None else np.sqrt(slip[0] * (edge + slip[1]))
         return 2 * root / (np.pi * profile.radius)
     shape, infinite = loaded.shape, _infinite(profile, edge, loaded, slip)
+    if isinstance(profile, Power) and slip is None:
+        # Contacts are similar: the stress over the slope g' is a constant of the exponent.
+        exponent = where(profile.exponent > 1, number(1.0) * profile.exponent, 2.0)
+        stress = np.vectorize(_over_slope, otypes=[float])(exponent)[()] * profile.dg(edge)
+        return where(infinite, inf, where(loaded, stress, 0.0))
     unknown, result = loaded & ~infinite, where(infinite, inf, full(0.0, edge))
     if isinstance(profile, RoundedPunch) and slip is None:
         on_curve = _on_curve(profile, edge)
@@ -130,6 +135,13 @@ def _on_curve(profile: RoundedPunch, edge: Array) -> Array:
         _, s = profile.flank(edge)
         height = _curve()(np.log(s / profile.flat_radius))[()]
         return height * profile.depth(edge) / s
+
+
+@lru_cache(maxsize=1024)
+def _over_slope(exponent: float) -> float:
+    """Largest pressure under a power, over E* g'(a), for an exponent > 1."""
+    unit = Power(1.0, exponent)
+    return float(_search(unit, np.ones(1))[0] / unit.dg(np.ones(1))[0])
 
 
 @cache

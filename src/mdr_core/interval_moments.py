@@ -100,7 +100,7 @@ class IntervalMoments:
                 different = self.over(low[first], span[first], ends[:, first])
                 return Moments(span, different.weights[:, index])
         if len(several := in_blocks(low.size, NODES)) > 1:
-            parts = [self._part(at).over(low[at], span[at], ends[:, at]) for at in several]
+            parts = [self.part(at).over(low[at], span[at], ends[:, at]) for at in several]
             return Moments(span, np.concatenate([part.weights for part in parts], axis=1))
         base, _ = break_below(self.profile, ends[1])
         crossed, weights = base > ends[0], np.empty((3, span.size))
@@ -111,7 +111,7 @@ class IntervalMoments:
             (~crossed, IntervalMoments.over_smooth),
         ):
             cases = low[chosen], span[chosen], ends[:, chosen], base[chosen]
-            weights[:, chosen] = over(self._part(chosen), *cases)
+            weights[:, chosen] = over(self.part(chosen), *cases)
         return Moments(span, weights)
 
     def _over_breaks(self, low: Array, span: Array, ends: Array, top: Array) -> Array:
@@ -178,14 +178,14 @@ class IntervalMoments:
         wide = grows | (radius[1] > np.where(base > 0, beyond, _WIDE) * radius[0])
         closed, by_rule = wide & long, ~wide & long
         if some(closed):
-            weights[:, closed] = self._part(closed).over_wide(span[closed], ends[:, closed])
+            weights[:, closed] = self.part(closed).over_wide(span[closed], ends[:, closed])
         if some(by_rule):
             at = span[by_rule], ends[:, by_rule], base[by_rule]
-            weights[:, by_rule] = self._part(by_rule).over_narrow(*at)
+            weights[:, by_rule] = self.part(by_rule).over_narrow(*at)
         return weights
 
-    def _part(self, chosen: Flags | Indices | slice) -> "IntervalMoments":
-        """The chosen cases of a sweep."""
+    def part(self, chosen: Flags | Indices | slice) -> "IntervalMoments":
+        """Return the moments of the chosen cases of a sweep."""
         profile = self.profile
         if not profile.swept:
             return self

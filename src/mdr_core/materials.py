@@ -167,10 +167,12 @@ def from_bodies(
     >>> round(from_bodies([steel, RIGID]).e_star / 1e9, 3)
     230.769
     """
-    if isinstance(bodies, Body) or len(bodies) != 2:
+    given: object = bodies
+    if not isinstance(given, Sequence) or len(given) != 2:
         raise InputError(("material", "bodies"), BODIES)
     for i, body in enumerate(bodies):
-        if not (isinstance(body, Body) or body == RIGID):
+        # A comparison with an array would be an array.
+        if not isinstance(body, Body) and str(body) != RIGID:
             raise InputError(("material", "bodies", i), 'must be a Body or "rigid"')
     parts = [body for body in bodies if isinstance(body, Body)]
     if not parts:

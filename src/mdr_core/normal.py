@@ -35,7 +35,7 @@ method have this accuracy (manual, Speed and accuracy)."""
 # Gauss's rule for the error of pressures, an estimate: nodes on each of equal intervals.
 _OF_PRESSURE: Final = (8, 8)
 # Radius over that of the second knot of a table at which the pressure on the axis is judged.
-_TIP: Final = 0.1
+_TIP: Final = 0.03
 # Radii over the contact radius at which the error of pressures is computed, beside the axis.
 _PLACES: Final = (0.3, 0.6, 0.9)
 

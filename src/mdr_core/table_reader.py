@@ -12,6 +12,7 @@ import numpy as np
 
 from mdr_core.errors import InputError
 from mdr_core.typing import Array
+from mdr_core.validation import require_type
 
 UNITS: Final = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "nm": 1e-9}
 """Units of length that are read, in metres."""
@@ -89,6 +90,7 @@ def read_table(
     ...     read_table(file)
     Points(r=array([0.    , 0.0001, 0.0002]), f=array([0.e+00, 5.e-07, 2.e-06]))
     """
+    require_type("file", file, str | Path, "the name of a file")
     with Path(file).open("rb") as stream:
         content = stream.read(_LARGEST + 1)
     if len(content) > _LARGEST:

@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from decimal import Decimal
 from math import inf
+from numbers import Real
 from typing import Any, Final
 
 import numpy as np
@@ -22,6 +24,8 @@ _NEGATIVE: Final = {
     "normal_force": ": compression is positive",
     "normal_velocity": ": approach is positive",
 }
+# Arrays of more values exceed the memory of most machines.
+_LARGEST_COUNT: Final = 10**9
 TIGHTEST, LOOSEST = 1e-13, 1e-3
 """Bounds of `rtol`: rounding errors of sums, and an error visible in a plot."""
 LEAST_CHANGE, MOST_CHANGE = 1e-4, 0.1
@@ -49,7 +53,7 @@ def require_type(name: str, value: object, types: Any, needed: str) -> None:
 def as_numbers(path: tuple[str | int, ...], values: float | ArrayLike) -> Array:
     """Return numbers as an array or a single double, or raise InputError at the path."""
     numbers: Any = None
-    if isinstance(values, (float, int)):
+    if isinstance(values, float):
         numbers = np.float64(values)
     else:
         masked = np.ma.getmaskarray(values) if isinstance(values, np.ma.MaskedArray) else None
@@ -57,14 +61,27 @@ def as_numbers(path: tuple[str | int, ...], values: float | ArrayLike) -> Array:
             # As an array it would hold the number beneath the mask.
             detail = "is masked: leave it out, or give a number"
             raise InputError((*path, *first_index(masked)), detail)
-        with suppress(TypeError, ValueError):
+        with suppress(TypeError, ValueError, OverflowError):
             array = np.asarray(values)
-            # NumPy would convert text as well.
-            numbers = array.astype(float, copy=False) if array.dtype.kind in "fiubO" else None
+            # NumPy would convert text, flags and dates as well.
+            if array.dtype.kind in "fiu" or (array.dtype.kind == "O" and not _odd(values)):
+                numbers = array.astype(float, copy=False)
     if numbers is None:
-        detail = f"must be a number or an array of numbers, not {type(values).__name__}"
+        odd = _odd(values)
+        # Of numbers alone only an integer beyond double precision is not converted.
+        detail = f"must be a number or an array of numbers, not {odd}" if odd else FINITE
         raise InputError(path, detail)
     return numbers[()]
+
+
+def _odd(values: Any) -> str:
+    """Return the type of the first value that is not a number, empty if there is none."""
+    with suppress(ValueError):
+        for value in np.array(values, dtype=object).flat:
+            if isinstance(value, bool) or not isinstance(value, Real | Decimal):
+                return type(value).__name__
+        return ""
+    return type(values).__name__
 
 
 def extremes(values: float | ArrayLike) -> tuple[float, float]:
@@ -110,7 +127,7 @@ def single(path: tuple[str | int, ...], value: float) -> float:
 
 def require_positive(path: tuple[str | int, ...], value: float | ArrayLike) -> None:
     """Raise InputError at the path unless all of the value is positive and finite."""
-    low, high = extremes(value if isinstance(value, (float, int)) else as_numbers(path, value))
+    low, high = extremes(value if isinstance(value, float) else as_numbers(path, value))
     if not (low > 0 and high < inf):
         raise InputError(path, POSITIVE if low <= 0 else FINITE)
 
@@ -118,6 +135,16 @@ def require_positive(path: tuple[str | int, ...], value: float | ArrayLike) -> N
 def require_single_positive(path: tuple[str | int, ...], value: float) -> None:
     """Raise InputError at the path unless the value is one number, positive and finite."""
     require_positive(path, single(path, value))
+
+
+def require_whole(path: tuple[str | int, ...], value: object) -> None:
+    """Raise InputError at the path unless the value is a whole number, as of points or cycles."""
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, int | np.integer)
+        or not -_LARGEST_COUNT <= value <= _LARGEST_COUNT
+    ):
+        raise InputError(path, f"must be a whole number, at most {_LARGEST_COUNT:.0e}")
 
 
 def not_negative(name: str) -> str:

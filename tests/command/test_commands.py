@@ -4,11 +4,12 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from mdr_command import __main__ as command
-from mdr_core import __version__
+from mdr_core import COMPILED, __version__
 from mdr_service.queries import QUERIES
 from tests.faults.server import PATIENCE
 
@@ -32,7 +33,18 @@ def test_version_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         command.main(["--version"])
     assert ended.value.code == 0
-    assert capsys.readouterr().out == f"mdr {__version__}\n"
+    shown = capsys.readouterr().out
+    assert shown.startswith(f"mdr {__version__}")
+    assert ("without its compiled module" in shown) is not COMPILED
+
+
+def test_version_names_a_missing_compiled_module(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setattr(command, "__file__", str(tmp_path / "mdr_command" / "__main__.py"))
+    with pytest.raises(SystemExit):
+        command.main(["--version"])
+    assert "without its compiled module: load histories" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("given", [[], ["nothing"], ["--nothing"]])

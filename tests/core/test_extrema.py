@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
 from mdr_core import fields, normal, tangential
@@ -36,6 +37,28 @@ def test_maximum_pressure_of_hertz() -> None:
     # [johnson] Eq. (4.24).
     expected = (6 * force * E_STAR**2 / (pi**3 * R**2)) ** (1 / 3)
     assert contact.maximum_pressure == pytest.approx(expected, rel=1e-14, abs=0)
+
+
+@pytest.mark.parametrize("exponent", [1.7, 2.001, 3.3, 60.0])
+def test_maximum_pressure_of_powers(exponent: float) -> None:
+    """(n kappa C/pi) int_t^1 x^(n-1)/sqrt(x^2 - t^2) dx at its largest, a^(n-1) times."""
+
+    def negative(t: float) -> float:
+        part = quad(lambda s: hypot(s, t) ** (exponent - 2), 0.0, sqrt(1 - t * t), epsabs=0.0)
+        return -part[0] / pi
+
+    places = np.linspace(0.0, 0.999, 200)
+    near = places[np.argmin([negative(t) for t in places])]
+    bounds = max(near - 0.01, 0.0), min(near + 0.01, 1.0)
+    found = minimize_scalar(negative, bounds=bounds, method="bounded", options={"xatol": 1e-9})
+    height = -min(found.fun, negative(0.0))
+    profile, a = Power(3.0, exponent), np.array([0.2, 0.7])
+    contact = normal.solve(profile, E_STAR, contact_radius=a)
+    expected = E_STAR * profile.dg(a) * height
+    assert contact.maximum_pressure == pytest.approx(expected, rel=1e-9, abs=0)
+    swept = Power(3.0, np.array([exponent, exponent]))
+    many = normal.solve(swept, E_STAR, contact_radius=a)
+    assert many.maximum_pressure == pytest.approx(expected, rel=1e-9, abs=0)
 
 
 @pytest.mark.parametrize("part", [0.0, 1e-9, 0.5, 0.999, 1.0])

@@ -142,6 +142,75 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
 ]
 
 
+MISTAKES = {
+    "an integer beyond double precision": 10**400,
+    "a list of integers beyond double precision": [10**400, 1.0],
+    "nothing": None,
+    "a flag": True,
+    "flags": np.array([True, False]),
+    "text": "1,5",
+    "Arabic digits": "\u0661\u0662",
+    "texts": ["1", "2"],
+    "rows of two lengths": [[1.0], [1.0, 2.0]],
+    "arrays of two shapes": [np.zeros((2, 3)), np.zeros((2, 4))],
+    "a complex number": 1j,
+    "dates": np.array(["2020-01-01"], dtype="datetime64[D]"),
+    "an object": object(),
+}
+CYCLE = partial(history.cycles, Cone(1.0), 1.0, 1.0, 0.3)
+ARGUMENTS: dict[str, Callable[[Any], Any]] = {
+    "slope": Cone,
+    "r": lambda value: Tabulated(value, [0.0, 1.0, 2.0]),
+    "breaks": lambda value: Tabulated([0.0, 1.0, 2.0], [0.0, 1.0, 4.0], breaks=value),
+    "coefficient": lambda value: Series((PowerTerm(value, 2.0),)),
+    "exponent": lambda value: Series((PowerTerm(1.0, value),)),
+    "terms": Series,
+    "youngs_modulus": lambda value: Body(value, 0.3),
+    "poissons_ratio": lambda value: Body(1.0, value),
+    "bodies": from_bodies,
+    "e_star": lambda value: normal.solve(Cone(1.0), value, normal_force=1.0),
+    "normal_force": lambda value: normal.solve(Cone(1.0), 1.0, normal_force=value),
+    "profile": lambda value: normal.solve(value, 1.0, normal_force=1.0),
+    "friction_coefficient": lambda value: history.unloaded(Cone(1.0), 1.0, 1.0, value),
+    "indentation_depth": lambda value: history.advance_many(
+        history.unloaded(Cone(1.0), 1.0, 1.0, 0.3), value, 0.0
+    ),
+    "amplitude": lambda value: CYCLE(
+        normal_force=1.0, normal_amplitude=value, tangential_force=0.1
+    ),
+    "tangential_force": lambda value: CYCLE(normal_force=1.0, tangential_force=value),
+    "count": lambda value: CYCLE(normal_force=1.0, tangential_force=0.1, count=value),
+    "points": lambda value: fields.grid(HERTZ, value),
+    "radius": lambda value: fields.pressure(HERTZ, value),
+    "resolution": lambda value: wear.evolution.solve(
+        normal.solve(Cone(1.0), 1.0, normal_force=1.0),
+        1.0,
+        0.3,
+        wear_coefficient=1.0,
+        cycles=[0.0],
+        tangential_force=0.1,
+        resolution=value,
+    ),
+}
+
+
+# A load that is None is not given: errors of it name all loads.
+PAIRS = [
+    (argument, mistake)
+    for argument in ARGUMENTS
+    for mistake in MISTAKES
+    if not (mistake == "nothing" and argument in {"normal_force", "tangential_force"})
+]
+
+
+@pytest.mark.parametrize(("argument", "mistake"), PAIRS)
+def test_error_of_a_wrong_type_names_the_argument(argument: str, mistake: str) -> None:
+    with pytest.raises(InputError) as raised:
+        ARGUMENTS[argument](MISTAKES[mistake])
+    assert argument in raised.value.path
+    assert len(raised.value.detail) < 200
+
+
 @pytest.mark.parametrize(("call", "path", "reason"), REJECTED)
 def test_error_names_path_index_and_reason(
     call: Callable[[], Any], path: tuple[str | int, ...], reason: str

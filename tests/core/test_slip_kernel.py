@@ -40,7 +40,8 @@ def test_compiled_kernel_is_bit_identical_to_python(
     compiled = slip_memory.follow(start, points)
     swept = friction_work.swept(compiled[0])
     vertices, path = np.tile(compiled[1].vertices, (9, 1)), rng.normal(0.3, 0.2, (4, 9))
-    contacts = vertices, len(compiled[1].vertices) * np.arange(1, 10), path
+    ends = len(compiled[1].vertices) * np.arange(1, 10)
+    contacts = slip_memory.Polylines(vertices, ends, path[:2]), path[2:]
     each = slip_memory.moved_each(*contacts)
     specification = importlib.util.spec_from_file_location("plain", TEXT)
     assert specification is not None

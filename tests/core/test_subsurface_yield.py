@@ -14,6 +14,7 @@ from mdr_core.errors import AccuracyError, InputError
 from mdr_core.profiles import (
     CappedParaboloid,
     Cone,
+    Ellipsoid,
     FlatPunch,
     Hyperboloid,
     Paraboloid,
@@ -347,6 +348,28 @@ def test_onset_takes_few_searches(
     monkeypatch.setattr(yielding, "_peak", peak)
     assert float(yield_onset_force(pushed, strength, poissons_ratio=0.3)) > 0
     assert len(counted) <= searches
+
+
+def test_onset_next_to_the_equator_of_an_ellipsoid_takes_few_searches(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """There the force ends in a root of the distance, which secants overshoot."""
+    counted: list[float] = []
+
+    def peak(*case: Any) -> tuple[float, ...]:
+        counted.append(searched(*case)[0])
+        return searched(*case)
+
+    contact = normal.solve(Ellipsoid(0.0402, 9.08e-5), 2.1e5, indentation_depth=2.64e-7)
+    sliding_ball = tangential.solve(contact, 1.4e5, 0.5, tangential_displacement=7.8e-7)
+    searched = yielding._peak
+    monkeypatch.setattr(yielding, "_peak", peak)
+    force = float(yield_onset_force(sliding_ball, 806.0, poissons_ratio=0.5))
+    assert len(counted) <= 12
+    at_onset = normal.solve(Ellipsoid(0.0402, 9.08e-5), 2.1e5, normal_force=force)
+    slides = tangential.solve(at_onset, 1.4e5, 0.5, tangential_force=0.5 * force)
+    stress_there = float(largest(slides, poissons_ratio=0.5).value)
+    assert stress_there == pytest.approx(806.0, rel=2e-5, abs=0)
 
 
 def test_incompressible_cone() -> None:

@@ -8,6 +8,7 @@ import pytest
 from mdr_core import normal, tangential
 from mdr_core.errors import AccuracyError, InputError
 from mdr_core.profiles import (
+    Cone,
     Paraboloid,
     Power,
     Profile,
@@ -227,3 +228,27 @@ def test_worn_profile_is_defined_up_to_the_end_of_the_profile() -> None:
     with pytest.raises(InputError) as raised:
         worn.initial_profile([end, np.nextafter(end, 3.0)])
     assert raised.value.path == ("radius", 1)
+
+
+@pytest.mark.parametrize(
+    ("profile", "load", "amplitude", "rtol"),
+    [
+        (
+            Cone(0.1),
+            {"normal_force": 0.1 * np.pi / 2},
+            {"tangential_displacement": 0.02 * np.pi},
+            1e-3,
+        ),
+        (Paraboloid(1.0), {"indentation_depth": 1.0}, {"tangential_force": 0.2}, 1e-9),
+    ],
+    ids=["cone at 1e-3", "depth with a force at 1e-9"],
+)
+def test_loosest_and_tight_tolerances_are_answered(
+    profile: Profile, load: dict[str, Any], amplitude: dict[str, Any], rtol: float
+) -> None:
+    contact = normal.solve(profile, 1.0, **load)
+    given: dict[str, Any] = {"wear_coefficient": 1e-3, "cycles": [1e4, 3e4], **amplitude}
+    finer = evolution.solve(contact, 1.0, 0.5, **given, resolution=64)
+    result = evolution.solve(contact, 1.0, 0.5, **given, rtol=rtol)
+    error = np.abs(result.worn_volume / finer.worn_volume - 1).max()
+    assert error <= result.error_estimate + finer.error_estimate

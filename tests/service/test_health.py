@@ -2,7 +2,7 @@
 
 import pytest
 
-from mdr_core import __version__
+from mdr_core import COMPILED, __version__
 from mdr_service import health
 from mdr_service.problems import NOT_READY, ServiceError
 from tests.conftest import Client
@@ -13,7 +13,11 @@ from tests.contract import strict_json
 def test_working_instance_is_ready(client: Client, path: str) -> None:
     response = client.get(path)
     assert response.status_code == 200
-    assert strict_json.loads(response.content) == {"status": "ok", "version": __version__}
+    assert strict_json.loads(response.content) == {
+        "status": "ok",
+        "version": __version__,
+        "compiled": COMPILED,
+    }
 
 
 def test_version_is_the_same_wherever_it_is_stated(client: Client) -> None:

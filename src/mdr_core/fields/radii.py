@@ -20,7 +20,7 @@ from mdr_core.normal import NormalContact, solve
 from mdr_core.tangential import TangentialContact
 from mdr_core.torsion import TorsionalContact
 from mdr_core.typing import Array
-from mdr_core.validation import extremes, require_type
+from mdr_core.validation import extremes, require_type, require_whole
 
 # Largest error of a field by the error of an edge, relative to its largest value, on a grid with
 # room enough: a tenth of the errors estimated elsewhere.
@@ -209,6 +209,7 @@ def graded(stops: Array, points: int) -> Array:
     InputError : fewer points than stops.
     """
     end = stops[-1]
+    require_whole(("points",), points)
     if points < stops.size:
         raise InputError(("points",), f"at least {stops.size} are needed for the singular radii")
     gaps = np.diff(stops)

@@ -1,8 +1,9 @@
-"""States of many contacts of one profile, for discrete elements, and one step of all of them."""
+"""States of many contacts, for discrete elements, and one step of all of them."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, ClassVar, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,71 +11,199 @@ from numpy.typing import ArrayLike
 from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import ContactState
-from mdr_core.history.slip_layout import NORMAL
-from mdr_core.history.slip_memory import Polyline, VertexTree
-from mdr_core.history.step_results import TractionVertices
-from mdr_core.interval_moments import interval_moments
-from mdr_core.typing import Array, Indices
-from mdr_core.validation import as_numbers, require_finite, require_inside, require_type
-
-
-class Polylines(NamedTuple):
-    """Polylines of many contacts."""
-
-    vertices: Array
-    """Vertices of all polylines, one after another, with the columns of `slip_layout`."""
-    ends: Indices
-    """End of each polyline among the vertices, shape (n,)."""
-    load_points: Array
-    """Normal and tangential coordinate of each contact, shape (2, n)."""
-
-    def line(self, index: int) -> Polyline:
-        """Return one polyline."""
-        begin = self.ends[index - 1] if index else 0
-        rows = self.vertices[begin : self.ends[index]]
-        return Polyline(rows, *self.load_points[:, index].tolist())
+from mdr_core.history.friction_work import dissipation
+from mdr_core.history.slip_layout import COLUMNS
+from mdr_core.history.slip_memory import Polylines, read_only
+from mdr_core.history.step_results import REGIMES, TractionVertices, decides_regime, regime_codes
+from mdr_core.interval_moments import IntervalMoments, interval_moments
+from mdr_core.materials import Material, normal_modulus, shear_modulus
+from mdr_core.profiles import Profile
+from mdr_core.results import Results
+from mdr_core.typing import Array, Indices, Parameter
+from mdr_core.validation import (
+    as_numbers,
+    require_finite,
+    require_inside,
+    require_positive,
+    require_type,
+)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class ContactStates:
-    """States of many contacts of one profile; each by its index is a `ContactState`."""
+class ContactStates(Results):
+    """States of many contacts with profiles of one kind.
 
-    contact: ContactState
-    """Profile, moduli and coefficient of friction of all contacts."""
+    `states[i]` is one of them as a `ContactState`; a mask, a slice or indices choose several.
+    """
+
+    profile: Profile
+    """Profile of all contacts; its parameters are numbers, or arrays over the contacts."""
+    e_star: Parameter
+    """E*, of all contacts or of each [pressure]."""
+    g_star: Parameter
+    """G*, likewise."""
+    friction_coefficient: Parameter
+    """mu, likewise [1]."""
     polylines: Polylines
     """Slip memory of each contact."""
-    before: Polylines | None = None
+    before: Polylines
     """Slip memory before the step that led here."""
+    regime_before: Indices
+    """Index of the slip regime in `REGIMES` before that step."""
+    # Slip fronts differ in number.
+    quantities: ClassVar[tuple[str, ...]] = (*ContactState.quantities[:-1], "regime")
+    about: ClassVar[tuple[str, ...]] = ()
+    moduli: ClassVar[tuple[str, ...]] = ("e_star", "g_star", "friction_coefficient")
 
     def __len__(self) -> int:
         return self.polylines.ends.size
 
-    def __getitem__(self, index: int) -> ContactState:
-        at = range(len(self))[index]
-        before, line = self.before and self.before.line(at), self.polylines.line(at)
-        return replace(self.contact, polyline=line, before=before)
+    @overload
+    def __getitem__(self, index: int) -> ContactState: ...
+
+    @overload
+    def __getitem__(self, index: Any) -> "ContactStates": ...
+
+    def __getitem__(self, index: Any) -> "ContactState | ContactStates":
+        one = isinstance(index, int | np.integer)
+        at: Any = range(len(self))[index] if one else np.arange(len(self))[index].ravel()
+        swept = {name: self.profile.parameters[name][at] for name in self.profile.swept}
+        given: dict[str, Any] = {"profile": self.profile.with_parameters(swept)}
+        for name in self.moduli:
+            value = getattr(self, name)
+            given[name] = value[at] if np.ndim(value) else value
+        if one:
+            line, before = self.polylines.line(at), self.before.line(at)
+            return ContactState(polyline=line, before=before, **given)
+        given["polylines"], given["before"] = self.polylines.at(at), self.before.at(at)
+        return ContactStates(regime_before=self.regime_before[at], **given)
+
+    @property
+    def displacement_ratio(self) -> Parameter:
+        """mu E*/G* [1]."""
+        return self.friction_coefficient * self.e_star / self.g_star
+
+    @property
+    def energy_unit(self) -> Parameter:
+        """(mu E*)^2/G* [pressure]."""
+        return self.friction_coefficient * self.e_star * self.displacement_ratio
+
+    @property
+    def _moments(self) -> IntervalMoments:
+        return interval_moments(self.profile, over_forces=False)
 
     @cached_property
     def _edges(self) -> TractionVertices:
-        vertices, ends, load_points = self.polylines
-        begins = np.append(0, ends[:-1])
-        parent = np.arange(-1, len(vertices) - 1, dtype=np.intp)
-        parent[begins[begins < ends]] = -1
-        top, rows = np.where(begins < ends, ends - 1, -1), vertices[:, NORMAL:].T
-        tree = VertexTree(parent, rows, top, (-1, 0.0, 0.0), load_points)
-        return TractionVertices(interval_moments(self.contact.profile, over_forces=False), tree)
+        owner = np.repeat(np.arange(len(self)), self.polylines.sizes)
+        tree = self.polylines.tree(self.polylines.load_points)
+        return TractionVertices(self._moments.part(owner), tree)
+
+    def _of_contacts(self, values: Array) -> Array:
+        """Return the values of the vertices at the edges of the contacts, zero in separation."""
+        return self._edges.tree.at_load_points(values)
+
+    @property
+    def indentation_depth(self) -> Array:
+        """d [length]; negative in separation."""
+        return self.polylines.load_points[0].copy()
+
+    @property
+    def tangential_displacement(self) -> Array:
+        """u_x [length]."""
+        return self.displacement_ratio * self.polylines.load_points[1]
+
+    @property
+    def contact_radius(self) -> Array:
+        """a [length], zero in separation."""
+        edges = self._edges
+        return self._of_contacts(edges.moments.profile.contact_radius(edges.coordinate))
 
     @property
     def normal_force(self) -> Array:
-        """F_N of each contact [force]."""
-        edges = self._edges
-        return self.contact.e_star * edges.tree.at_load_points(edges.conjugate)
+        """F_N [force]."""
+        return self.e_star * self._of_contacts(self._edges.conjugate)
 
     @property
     def tangential_force(self) -> Array:
-        """F_x of each contact [force]."""
-        edges, limit = self._edges, self.contact.friction_coefficient * self.contact.e_star
-        return limit * edges.tree.at_load_points(edges.shear)
+        """F_x [force]."""
+        return self.friction_coefficient * self.e_star * self._of_contacts(self._edges.shear)
+
+    @property
+    def elastic_energy(self) -> Array:
+        """Energy stored by the normal load [force length]."""
+        edge = self._of_contacts(self._edges.coordinate)
+        return self.e_star * self.profile.reduced_energy(edge)
+
+    @property
+    def tangential_energy(self) -> Array:
+        """Energy stored by the tangential load [force length]."""
+        return self.energy_unit * self._of_contacts(self._edges.square)
+
+    @cached_property
+    def dissipation(self) -> Array:
+        """Energy dissipated by friction on the step that led here [force length]."""
+        step = self.before.tree(self.polylines.load_points)
+        return self.energy_unit * dissipation(self._moments, step)
+
+    @cached_property
+    def regime_codes(self) -> Indices:
+        """Index of the slip regime in `REGIMES`."""
+        codes, after = regime_codes(self._edges), self.polylines.load_points
+        known = decides_regime(codes, after[0], *(after - self.before.load_points))
+        return np.where(known, codes, np.maximum(self.regime_before, codes > 0))
+
+    @property
+    def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
+        """Slip regime: "no_contact", "stick", "partial_slip" or "full_slip"."""
+        return np.array(REGIMES)[self.regime_codes]
+
+
+def unloaded_many(
+    profile: Profile,
+    e_star: ArrayLike | Material,
+    g_star: ArrayLike | Material | None,
+    friction_coefficient: ArrayLike,
+) -> ContactStates:
+    """Return the states of many pairs of bodies before first contact, at zero displacement.
+
+    Parameters
+    ----------
+    profile : profile of any kind; its parameters are numbers, or arrays of shape (n,).
+    e_star, g_star : effective moduli [pressure], > 0, of all contacts or of shape (n,), or the
+        material that has them, for each.
+    friction_coefficient : mu [1], > 0, of all contacts or of shape (n,).
+
+    Returns
+    -------
+    The states from which `advance_many` takes the first step; one without arrays.
+
+    Raises
+    ------
+    InputError : values that are not positive and finite, or arrays of different lengths.
+
+    Examples
+    --------
+    Hertz contacts of two radii: F_N = 4/3 E* sqrt(R d^3).
+
+    >>> from mdr_core.profiles import Paraboloid
+    >>> states = unloaded_many(Paraboloid([1.0, 4.0]), 1.0, 1.0, 0.5)
+    >>> (advance_many(states, 0.09, 0.0).normal_force / 0.09**1.5).round(12).tolist()
+    [1.333333333333, 2.666666666667]
+    """
+    require_type("profile", profile, Profile, "a profile such as Paraboloid([0.01, 0.02])")
+    given: dict[tuple[str, ...], Any] = {
+        ("material", "e_star"): normal_modulus(e_star),
+        ("material", "g_star"): shear_modulus(g_star),
+        ("friction_coefficient",): friction_coefficient,
+    }
+    given |= {("profile", name): profile.parameters[name] for name in profile.swept}
+    values, count = _per_contact(given)
+    for path, value in given.items():
+        require_positive(path, value)
+    none = np.zeros(count, dtype=np.intp)
+    lines = Polylines(read_only(np.zeros((0, COLUMNS))), none, np.zeros((2, count)))
+    e_star, g_star, friction, *_ = values
+    return ContactStates(profile, e_star, g_star, friction, lines, lines, none)
 
 
 def advance_many(
@@ -90,7 +219,7 @@ def advance_many(
 
     Parameters
     ----------
-    states : states from an earlier step, or one state, as from `unloaded`, for all contacts.
+    states : states from `unloaded_many` or an earlier step, or one state for all contacts.
     indentation_depth : d of each contact after the step [length], shape (n,); <= 0 in separation.
     tangential_displacement : u_x of each contact after the step [length], shape (n,).
 
@@ -114,29 +243,86 @@ def advance_many(
     >>> (states.tangential_force / (0.5 * states.normal_force)).round(12).tolist()
     [0.0, 0.75, 1.0]
     """
-    needed = "the states from advance_many, or one state, as from history.unloaded"
+    needed = "the states from advance_many or unloaded_many, or one state, as from history.unloaded"
     require_type("states", states, ContactState | ContactStates, needed)
-    given = (
-        ("indentation_depth", indentation_depth),
-        ("tangential_displacement", tangential_displacement),
-    )
-    loads = {name: as_numbers((name,), values) for name, values in given}
+    given: dict[tuple[str, ...], Any] = {
+        ("indentation_depth",): indentation_depth,
+        ("tangential_displacement",): tangential_displacement,
+    }
+    loads, count = _per_contact(given, len(states) if isinstance(states, ContactStates) else None)
+    for path, values in zip(given, loads, strict=True):
+        require_finite(path, values)
     if isinstance(states, ContactState):
-        sizes = [values.size for values in loads.values() if np.ndim(values)]
-        states = _repeated(states, sizes[0] if sizes else 1)
-    contact, last, count = states.contact, states.polylines, len(states)
-    path = np.vstack([last.load_points, np.empty((2, count))])
-    for row, (name, values) in zip(path[2:], loads.items(), strict=True):
-        if np.shape(values) not in {(), (count,)}:
-            raise InputError((name,), f"must be one number, or one for each of {count} contacts")
-        require_finite((name,), values)
-        row[:] = values
-    profile, largest = contact.profile, contact.profile.largest_loads
+        states = _repeated(states, count)
+    profile, largest = states.profile, states.profile.largest_loads
     if largest is not None:
-        require_inside(("indentation_depth",), path[2] > largest[0], profile.domain)
-    path[3] /= contact.displacement_ratio
-    moved = slip_memory.moved_each(last.vertices, last.ends, path)
-    return ContactStates(contact, Polylines(*moved, path[2:]), last)
+        require_inside(("indentation_depth",), loads[0] > largest[0], profile.domain)
+    after = np.empty((2, count))
+    after[0], after[1] = loads[0], loads[1] / states.displacement_ratio
+    lines, codes = slip_memory.moved_each(states.polylines, after), states.regime_codes
+    return replace(states, polylines=lines, before=states.polylines, regime_before=codes)
+
+
+def join(*states: ContactState | ContactStates) -> ContactStates:
+    """Return the states of several sets of contacts as those of one, in their order.
+
+    Parameters, moduli and coefficients of friction may differ, but not a table or a series. Raises
+    InputError without states, and for profiles of several kinds.
+
+    Examples
+    --------
+    >>> from mdr_core.profiles import Paraboloid
+    >>> states = [unloaded_many(Paraboloid(radius), 1.0, 1.0, 0.5) for radius in (1.0, 4.0)]
+    >>> join(*states).profile.radius.tolist()
+    [1.0, 4.0]
+    """
+    for each in states:
+        require_type("states", each, ContactState | ContactStates, "states of contacts")
+    many = [_repeated(each, 1) if isinstance(each, ContactState) else each for each in states]
+    if not many:
+        raise InputError(("states",), "at least one is needed")
+    profile, sizes = many[0].profile, [len(each) for each in many]
+    parameters = [each.profile.parameters for each in many]
+    # A table has no parameters, and those of a series are not numbers.
+    numbers = parameters[0] and not any(isinstance(one, tuple) for one in parameters[0].values())
+    for other in (each.profile for each in many):
+        if other != profile if not numbers else type(other) is not type(profile):
+            detail = f"a {profile.kind} and another {other.kind} cannot be joined"
+            raise InputError(("states",), detail)
+    if numbers:
+        profile = profile.with_parameters(_joined(parameters, sizes))
+    moduli = [{name: getattr(each, name) for name in ContactStates.moduli} for each in many]
+    return ContactStates(
+        profile=profile,
+        polylines=slip_memory.joined([each.polylines for each in many]),
+        before=slip_memory.joined([each.before for each in many]),
+        regime_before=np.concatenate([each.regime_before for each in many]),
+        **_joined(moduli, sizes),
+    )
+
+
+def _joined(values: Sequence[Mapping[str, Parameter]], sizes: Sequence[int]) -> dict[str, Any]:
+    """Return values by name over all contacts; one that is common to them stays a number."""
+    found = {}
+    for name in values[0]:
+        each = [given[name] for given in values]
+        if any(map(np.ndim, each)) or len(set(each)) > 1:
+            each = [np.concatenate(list(map(np.broadcast_to, each, sizes)))]
+        found[name] = each[0]
+    return found
+
+
+def _per_contact(
+    given: Mapping[tuple[str, ...], Any], count: int | None = None
+) -> tuple[list[Array], int]:
+    """Return values by path as numbers or arrays of one length, and the number of contacts."""
+    values = [as_numbers(path, value) for path, value in given.items()]
+    if count is None:
+        count = next((value.size for value in values if value.ndim), 1)
+    for path, value in zip(given, values, strict=True):
+        if value.shape not in {(), (count,)}:
+            raise InputError(path, f"must be one number, or one for each of {count} contacts")
+    return values, count
 
 
 def _repeated(state: ContactState, count: int) -> ContactStates:
@@ -144,4 +330,8 @@ def _repeated(state: ContactState, count: int) -> ContactStates:
     vertices, *load_point = state.polyline
     ends = len(vertices) * np.arange(1, count + 1)
     load_points = np.tile(load_point, (count, 1)).T
-    return ContactStates(state, Polylines(np.tile(vertices, (count, 1)), ends, load_points))
+    lines = Polylines(read_only(np.tile(vertices, (count, 1))), ends, load_points)
+    moduli = state.e_star, state.g_star, state.friction_coefficient
+    moments = interval_moments(state.profile, over_forces=False)
+    codes = regime_codes(TractionVertices(moments, lines.tree(load_points)))
+    return ContactStates(state.profile, *moduli, lines, lines, codes)

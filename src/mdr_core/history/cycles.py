@@ -12,7 +12,7 @@ from mdr_core.history.solver import LoadHistory, solve
 from mdr_core.materials import Material
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
-from mdr_core.validation import UNRESOLVED
+from mdr_core.validation import UNRESOLVED, require_whole, single
 
 
 @dataclass(frozen=True, repr=False)
@@ -99,22 +99,26 @@ def cycles(
     >>> bool(abs(loop.energy_per_cycle[0] / (18 / 5 * (4 / 30) ** 2 * factor) - 1) < 1e-12)
     True
     """
+    require_whole(("history", "count"), count)
     mean = indentation_depth if normal_force is None else normal_force
+    normal = "indentation_depth" if normal_force is None else "normal_force"
+    tangential = "tangential_displacement" if tangential_force is None else "tangential_force"
+    amplitude = single(("history", "normal", "amplitude"), normal_amplitude)
     if samples_per_step is None:
-        normal = "indentation_depth" if normal_force is None else "normal_force"
-        tangential = "tangential_displacement" if tangential_force is None else "tangential_force"
-        samples_per_step = default_samples(normal, tangential) if normal_amplitude else 1
-    if mean is not None and not 0 <= normal_amplitude <= mean:
+        samples_per_step = default_samples(normal, tangential) if amplitude else 1
+    if mean is not None and not 0 <= amplitude <= single(("history", "normal", normal), mean):
         raise InputError(("history", "normal", "amplitude"), "must lie between 0 and the mean")
     if count < 1:
         raise InputError(("history", "count"), "must be at least 1")
     phase = np.append([0.0, 1.0], np.tile([-1.0, 1.0], count))
 
     def around(value: float | None) -> Array | None:
-        return None if value is None else value + normal_amplitude * phase
+        path = "history", "normal", normal
+        return None if value is None else single(path, value) + amplitude * phase
 
     def turning(value: float | None) -> Array | None:
-        return None if value is None else value * phase
+        path = "history", "tangential", tangential
+        return None if value is None else single(path, value) * phase
 
     history = solve(
         profile,

@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mdr_core.elementwise import in_blocks
 from mdr_core.history import slip_kernel as kernel
 from mdr_core.history.slip_memory import VertexTree
 from mdr_core.interval_moments import IntervalMoments
@@ -41,15 +42,16 @@ class SweptParts(NamedTuple):
     """Distance of the lower end from the upper one, free of cancellation, shape (2, m)."""
 
     @property
-    def ends(self) -> Array:
-        """Distances of both ends from P: coordinate, upper and lower end, shape (2, 2, m)."""
-        return np.stack([self.upper, self.upper + self.run], axis=1)
+    def ends(self) -> tuple[Array, Array]:
+        """Distances of the upper and the lower end from P, shape (2, m)."""
+        return self.upper, self.upper + self.run
 
     @property
-    def sides(self) -> Array:
+    def sides(self) -> tuple[Array, Array]:
         """Cross products of P' and both ends: positive where b is exceeded first."""
-        (n, s), ends = self.fallen, self.ends
-        return np.asarray(ends[1] * n - ends[0] * s)
+        n, s = self.fallen
+        upper, lower = (end[1] * n - end[0] * s for end in self.ends)
+        return upper, lower
 
     def divided(self, share: Array) -> "SweptParts":
         """Return the parts, divided at a share of their length from the upper end, if inside."""
@@ -62,8 +64,23 @@ class SweptParts(NamedTuple):
 
 
 def dissipation(moments: IntervalMoments, tree: VertexTree) -> Array:
-    """Return G* D/(mu E*)^2 of every step [length^3], >= 0."""
+    """Return G* D/(mu E*)^2 of every step [length^3], >= 0.
+
+    The parameters of the profile may be arrays over the steps.
+    """
     parts = swept(tree)
+    found = [
+        _work_on(moments, SweptParts._make(row[..., block] for row in parts))
+        for block in in_blocks(parts.low.size)
+    ]
+    if not found:
+        return np.zeros(tree.top.size)
+    step, work = map(np.concatenate, zip(*found, strict=True))
+    return np.asarray(np.bincount(step, work, tree.top.size), dtype=float)
+
+
+def _work_on(moments: IntervalMoments, parts: SweptParts) -> tuple[Indices, Array]:
+    """Return steps, and G* D/(mu E*)^2 of pieces of the parts; the parts are changed."""
     span = parts.run[0]
     ended = (parts.fallen[0] - parts.upper[0]) / np.where(span > 0, span, 1.0)
     parts = parts.divided(ended)
@@ -74,23 +91,23 @@ def dissipation(moments: IntervalMoments, tree: VertexTree) -> Array:
     if moments.over_forces:
         # Prescribed forces do not exceed friction: work on the axis is rounding error.
         terms[0, low == 0] = 0.0
-    edges = moments.contact_coordinate(np.append(low, low + length)).reshape(2, -1)
+    moments = moments.part(parts.step)
+    edges = moments.contact_coordinate(np.array([low, low + length]))
     weights = moments.over(low, length, edges).weights
     # Over forces the measure is infinite on the axis, where M is zero.
     work = np.multiply(terms, weights, where=terms > 0, out=np.zeros(terms.shape)).sum(axis=0)
     # All springs of a flat are on the axis.
-    flat = 2 * float(moments.profile.first_radius)
-    work += np.where(low == 0, flat * terms[0], 0.0)
-    return np.asarray(np.bincount(parts.step, work, tree.top.size), dtype=float)
+    work += np.where(low == 0, 2 * moments.profile.first_radius * terms[0], 0.0)
+    return parts.step, work
 
 
 def _work(parts: SweptParts) -> Array:
     """Return the Bernstein coefficients of M on each part, upwards, >= 0, shape (3, m)."""
-    (n_end, s_end), sides = parts.fallen, parts.sides
+    (n_end, s_end), sides = parts.fallen, np.array(parts.sides)
     backward = (n_end + s_end <= 0) | ((n_end > s_end) & (sides[0] + sides[1] >= 0))
     sign = np.where(backward, -1.0, 1.0)
     fall = n_end + sign * s_end
-    n, s = parts.ends
+    n, s = np.stack(parts.ends, axis=1)
     first, last = np.maximum(-sign * sides / fall, 0.0), np.maximum(n - n_end, 0.0)
     # The contact of springs above P' ends before the step.
     in_contact, apart = fall - (n + sign * s), first * fall / np.where(n_end > 0, n_end, 1.0)
@@ -102,16 +119,17 @@ def _work(parts: SweptParts) -> Array:
 
 def swept(tree: VertexTree) -> SweptParts:
     """Return what the slip front sweeps of the polyline before each step, and of the path of P."""
-    vertex, *place = tree.start
-    path = np.hstack([np.array(place)[:, None], tree.path])
-    (n, n_end), (s, s_end) = ((row[:-1], row[1:]) for row in path)
+    count = tree.top.size
+    starts = zip(tree.start, (tree.top, *tree.path), strict=True)
+    tops, n, s = (np.append(np.asarray(first), later)[:count] for first, later in starts)
+    n_end, s_end = tree.path
     # Contact begins, or ends, where the straight step crosses normal coordinate zero.
     touch, moved = np.maximum(n, n_end) > 0, n - n_end
     crossing = s + (s_end - s) * n / np.where(touch & (moved != 0), moved, 1.0)
     s, s_end = np.where(n > 0, s, crossing), np.where(n_end > 0, s_end, crossing)
     n, n_end = np.maximum(n, 0.0), np.maximum(n_end, 0.0)
     fallen = np.where(touch, [n - n_end, s - s_end], 0.0)
-    tops, count = np.append(vertex, tree.top[:-1]), tree.parent.size + tree.top.size
+    count += tree.parent.size
     while True:
         room, found = count, np.empty((_NUMBERS, count))
         count = kernel.sweep(tree.parent, tree.vertices, tops, fallen, found)

@@ -24,7 +24,7 @@ from mdr_core.history.slip_memory import LoadPoints, Polyline
 from mdr_core.history.step_results import REGIMES
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices
-from mdr_core.validation import require_finite, require_not_negative
+from mdr_core.validation import require_finite, require_not_negative, require_whole
 
 # Attributes that define a table, which has no parameters.
 _TABLE: Final = ("r", "values", "breaks", "uncertainty")
@@ -52,7 +52,8 @@ class SavedState(NamedTuple):
     @classmethod
     def parsed(cls, given: Mapping[str, Any], contact: str) -> Self:
         """Return the state of a `contact` from its members; raise InputError if it is of none."""
-        if set(given) != set(cls._fields):
+        members: object = given
+        if not isinstance(members, Mapping) or set(members) != set(cls._fields):
             detail = f"must have the members of a final_state: {', '.join(cls._fields)}"
             raise InputError(("initial_state",), detail)
         if given["regime"] not in REGIMES:
@@ -263,6 +264,7 @@ def build(
     InputError : lengths that differ and are not 1, no points, numbers that are not finite, a
         negative normal force, or less than one sample per step.
     """
+    require_whole(("history", "samples_per_step"), samples_per_step)
     if samples_per_step < 1:
         raise InputError(("history", "samples_per_step"), "must be at least 1")
     normal_points = _checked("normal", *normal)

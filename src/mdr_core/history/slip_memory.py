@@ -20,6 +20,7 @@ depths where displacements are prescribed, and reduced normal forces where tange
 Source: notes, §10.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
@@ -71,8 +72,8 @@ class VertexTree:
     """Normal coordinate, and slope of the anchor below each vertex, shape (2, m)."""
     top: Indices
     """Vertex of the load point after each step, -1 in separation; shape (n,)."""
-    start: tuple[int, float, float]
-    """Vertex and coordinates of the load point before the first step."""
+    start: tuple[int, float, float] | tuple[Indices, Array, Array]
+    """Vertex and coordinates of the load point before the first step, or before each of them."""
     path: Array
     """Normal and tangential coordinate of each load point, shape (2, n)."""
 
@@ -116,6 +117,43 @@ class VertexTree:
         return total
 
 
+class Polylines(NamedTuple):
+    """Polylines of many contacts."""
+
+    vertices: Array
+    """Vertices of all polylines, one after another, with the columns of `slip_layout`."""
+    ends: Indices
+    """End of each polyline among the vertices, shape (n,)."""
+    load_points: Array
+    """Normal and tangential coordinate of each contact, shape (2, n)."""
+
+    @property
+    def sizes(self) -> Indices:
+        """Number of vertices of each polyline, 0 in separation."""
+        return np.diff(self.ends, prepend=0)
+
+    def line(self, index: int) -> Polyline:
+        """Return one polyline."""
+        begin = self.ends[index - 1] if index else 0
+        rows = self.vertices[begin : self.ends[index]]
+        return Polyline(rows, *self.load_points[:, index].tolist())
+
+    def at(self, chosen: Indices) -> "Polylines":
+        """Return the chosen polylines."""
+        sizes = self.sizes[chosen]
+        ends = np.cumsum(sizes)
+        rows = np.arange(sizes.sum()) + np.repeat(self.ends[chosen] - ends, sizes)
+        return Polylines(read_only(self.vertices[rows]), ends, self.load_points[:, chosen])
+
+    def tree(self, load_points: Array) -> VertexTree:
+        """Return all polylines as a tree, with the step of each contact to a load point."""
+        begins, in_contact = self.ends - self.sizes, self.sizes > 0
+        parent = np.arange(-1, len(self.vertices) - 1, dtype=np.intp)
+        parent[begins[in_contact]] = -1
+        top, rows = np.where(in_contact, self.ends - 1, -1), self.vertices[:, NORMAL:].T
+        return VertexTree(parent, rows, top, (top, *self.load_points), load_points)
+
+
 def follow(start: Polyline, points: LoadPoints) -> tuple[VertexTree, Polyline]:
     """Return the vertices of the polylines after straight steps, and the last polyline.
 
@@ -139,21 +177,23 @@ def moved(line: Polyline, normal: float, tangential: float) -> tuple[Polyline, i
     return Polyline(_polyline_on(stack, rows), normal, tangential), stack.changed
 
 
-def moved_each(vertices: Array, ends: Indices, path: Array) -> tuple[Array, Indices]:
-    """Return the vertices of many polylines, and their ends, after a straight step of each.
-
-    Parameters
-    ----------
-    vertices : vertices of all polylines, one after another, shape (m, 4).
-    ends : end of each polyline among them, shape (n,).
-    path : normal and tangential coordinates before the step and after it, shape (4, n).
-    """
+def moved_each(lines: Polylines, load_points: Array) -> Polylines:
+    """Return many polylines after a straight step of each to a load point, shape (2, n)."""
+    vertices, ends, before = lines
+    path = np.vstack([before, load_points])
     longest = int(np.diff(ends, prepend=0).max(initial=0))
     rows = np.empty((longest + _VERTICES, COLUMNS))
     moved, moved_ends = np.empty((len(vertices) + _VERTICES * ends.size, COLUMNS)), ends.copy()
     stack = kernel.PolylineStack(rows, -1, 0.0, 0.0)
     made = stack.run_each(ends, path, vertices, moved, moved_ends)
-    return read_only(moved[:made]), moved_ends
+    return Polylines(read_only(moved[:made]), moved_ends, load_points)
+
+
+def joined(lines: Sequence[Polylines]) -> Polylines:
+    """Return the polylines of several sets of contacts as those of one."""
+    vertices = np.concatenate([each.vertices for each in lines])
+    ends = np.cumsum(np.concatenate([each.sizes for each in lines]))
+    return Polylines(read_only(vertices), ends, np.hstack([each.load_points for each in lines]))
 
 
 def _stacked(line: Polyline, steps: int) -> tuple[Array, kernel.PolylineStack]:

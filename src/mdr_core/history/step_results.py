@@ -23,7 +23,7 @@ from mdr_core.history import slip_memory
 from mdr_core.history.friction_work import dissipation
 from mdr_core.history.slip_memory import LoadPoints, Polyline, VertexTree
 from mdr_core.interval_moments import IntervalMoments, interval_moments
-from mdr_core.typing import Array, Indices
+from mdr_core.typing import Array, Flags, Indices, Numbers
 
 # Steps whose vertices are kept for later results, which take 40 MB. Those of more steps take longer
 # to be stored and fetched than to be computed again, and their memory has to have a bound.
@@ -60,7 +60,7 @@ class TractionVertices:
         short = np.flatnonzero(tree.span < SHORT * tree.normal)
         if short.size:
             ends = self.coordinate[tree.parent[short]], self.coordinate[short]
-            step[short] = tree.span[short] * self.moments.mean_slope(*ends)
+            step[short] = tree.span[short] * self.moments.part(short).mean_slope(*ends)
         return step
 
     @cached_property
@@ -96,7 +96,7 @@ class TractionVertices:
         upper = np.flatnonzero(tree.parent >= 0)
         lower, grown = tree.parent[upper], np.zeros(tree.parent.shape)
         ends = np.array([coordinate[lower], coordinate[upper]])
-        over_depths = interval_moments(moments.profile, over_forces=False)
+        over_depths = interval_moments(moments.profile, over_forces=False).part(upper)
         growth = tree.slope[upper] * step[upper]
         segments = depth[lower], step[upper], growth, ends, self.shear[lower]
         grown[upper] = variance_growth(over_depths, *segments)
@@ -133,6 +133,30 @@ def variance_growth(
     return np.asarray(
         np.square(growth) * spread / some_width + inner * width / outer * np.square(apart)
     )
+
+
+def regime_codes(vertices: TractionVertices) -> Indices:
+    """Return the index in `REGIMES` for the springs at their limit: none, the outermost, or all."""
+    tree, slips = vertices.tree, 1 if vertices.moments.profile.has_no_partial_slip else 2
+    full = tree.on_face & (tree.parent[tree.parent] < 0)
+    codes = np.where(full, 3, np.where(tree.on_face, slips, 1))
+    return tree.at_load_points(codes).astype(np.intp)
+
+
+def decides_regime(codes: Indices, normal: Array, deeper: Array, further: Array) -> Flags:
+    """Return True for steps after which the code is the slip regime; others keep the one before.
+
+    Springs that reach their friction limit without slip, as where both forces grow in the ratio mu,
+    leave the regime as it is.
+
+    Parameters
+    ----------
+    codes : those of `regime_codes`.
+    normal : normal coordinate after each step.
+    deeper, further : growth of the normal and of the tangential coordinate.
+    """
+    rounding = np.where(deeper > 0, ROUNDING * normal, 0.0)
+    return (codes < 2) | (np.abs(further) - deeper > rounding)
 
 
 class _Block(NamedTuple):
@@ -180,22 +204,13 @@ class StepResults:
     def regime(self) -> Indices:
         """Index in `REGIMES` of the slip regime.
 
-        Determined by the springs at their friction limit: none, the outermost, or all. Springs that
-        reach it without slip, as where both forces grow in the ratio mu, leave the regime as it is.
+        Determined by the springs at their friction limit: see `regime_codes`, `decides_regime`.
         """
-        slips = 1 if self.moments.profile.has_no_partial_slip else 2
-
-        def code(block: TractionVertices) -> Array:
-            tree, top = block.tree, block.tree.top
-            limited = tree.on_face[top]
-            full = limited & (tree.parent[tree.parent[top]] < 0)
-            return np.where(top >= 0, np.where(full, 3, np.where(limited, slips, 1)), 0)
-
-        codes, before = self._per_step(code).astype(np.intp), REGIMES.index(self.regime_before)
+        codes = self._per_step(regime_codes).astype(np.intp)
+        before = REGIMES.index(self.regime_before)
         deeper = np.diff(self.points.normal, prepend=self.start.normal)
-        further = np.abs(np.diff(self.points.tangential, prepend=self.start.tangential))
-        rounding = np.where(deeper > 0, ROUNDING * self.points.normal, 0.0)
-        known = (codes < 2) | (further - deeper > rounding)
+        further = np.diff(self.points.tangential, prepend=self.start.tangential)
+        known = decides_regime(codes, self.points.normal, deeper, further)
         last = np.maximum.accumulate(np.where(known, np.arange(codes.size), -1))
         return np.maximum(np.where(last < 0, before, codes[last]), codes > 0)
 
@@ -229,7 +244,7 @@ class StepResults:
             tree, line = slip_memory.follow(line, points)
             yield _Block(TractionVertices(self.moments, tree), line)
 
-    def _per_step(self, result: Callable[[TractionVertices], Array]) -> Array:
+    def _per_step(self, result: Callable[[TractionVertices], Numbers]) -> Numbers:
         """Return a result of every step, zero in blocks without contact."""
         found = [
             result(vertices) if vertices.tree.parent.size else np.zeros(vertices.tree.top.shape)

@@ -16,6 +16,7 @@ from mdr_core.profiles.base import Profile
 from mdr_core.profiles.power_functions import kappa, power, power_slope
 from mdr_core.profiles.power_sums import first_negative_radius, log_terms
 from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.validation import single
 
 
 @dataclass(frozen=True)
@@ -56,14 +57,16 @@ class Series(Profile):
 
     def __post_init__(self) -> None:
         path = ("profile", "terms")
-        if not self.terms:
-            raise InputError(path, "at least one term is needed")
+        terms: Any = self.terms
+        if not (isinstance(terms, tuple | list) and terms):
+            raise InputError(path, "at least one term is needed, in a tuple of PowerTerm")
         for i, term in enumerate(self.terms):
             if not isinstance(term, PowerTerm):
                 raise InputError((*path, i), "must be a PowerTerm(coefficient, exponent)")
-            if not (isfinite(term.coefficient) and term.coefficient != 0):
+            coefficient = single((*path, i, "coefficient"), term.coefficient)
+            if not (isfinite(coefficient) and coefficient != 0):
                 raise InputError((*path, i, "coefficient"), "must be finite and not zero")
-            if not 0 < term.exponent < inf:
+            if not 0 < single((*path, i, "exponent"), term.exponent) < inf:
                 raise InputError((*path, i, "exponent"), "must be positive and finite")
         if not self._powers:
             raise InputError(path, "the terms cancel to zero")

@@ -167,11 +167,19 @@ class TableBasis:
             rows = np.diff(rows, axis=0) / span[:, None]
         return self.padded(rows * np.sqrt(self._spans[-1])[:, None])[::-1]
 
-    def grading(self, start: float) -> Array:
-        """Weight of each row of a roughness that is graded from the radius `start` on."""
-        o = self.order
-        support = sliding_window_view(self.t[o:-o], self.degree - o + 2).mean(axis=1)
-        return ((support[::-1] + start) / (1 + start)) ** (o - 0.5)
+    def grading(self, share: float) -> Array | float:
+        """Weight of each row of a roughness that grows towards the axis or, if < 0, the end.
+
+        Parameters
+        ----------
+        share : distance from which it grows over the step there; infinite for an even one.
+        """
+        if np.isinf(share):
+            return 1.0
+        o, x = self.order, self.knots
+        place = sliding_window_view(self.t[o:-o], self.degree - o + 2).mean(axis=1)[::-1]
+        start = abs(share) * (x[1] if share > 0 else x[-1] - x[-2])
+        return (((place if share > 0 else 1 - place) + start) / (1 + start)) ** (o - 0.5)
 
     @cached_property
     def by_roughness(self) -> tuple[Array, Array]:

@@ -30,8 +30,9 @@ _WEIGHTS: Final = 10.0 ** np.arange(-40, 6.1, 0.5)
 _LEAST: Final = 38
 # Smallest weight that is preferred among equally likely ones: its root has digits to spare.
 _RESOLVED: Final = 1e-10
-# Radius, over the first one, from which a graded roughness grows; infinity is an even one.
-_GRADINGS: Final = (np.inf, 0.1)
+# Distance over the step there from which the roughness grows towards the axis or, if < 0, the end,
+# as at a fine tip or next to the equator of a sphere; an even roughness is infinite.
+_GRADINGS: Final = (np.inf, 0.1, -0.1)
 # Twice the logarithm of the odds against one jump of the slope, e to 1.
 _JUMP: Final = 2.0
 # Likelihood over the largest one below which a choice has no share in the error.
@@ -247,14 +248,14 @@ class _Model:
     ----------
     uncertainty : standard uncertainty of the heights over their range; None to estimate it.
     jumps : True where the slope may jump: at the axis, and at each break.
-    grading : radius over the first one from which the roughness is graded; see `_GRADINGS`.
+    grading : see `TableBasis.grading`.
     """
 
     def __init__(
         self, basis: TableBasis, uncertainty: float | None, jumps: Flags, grading: float
     ) -> None:
         self.basis, self.jumps, count = basis, jumps, basis.points.x.size
-        grade = basis.grading(grading * basis.knots[1]) if grading < np.inf else 1.0
+        grade = basis.grading(grading)
         self.graded = basis.roughness * np.reshape(grade, (-1, 1))
         smooth, rough = basis.by_roughness
         self.turn, triangle = basis.triangle

@@ -21,7 +21,7 @@ from mdr_core.profiles.table_fit import fit_table
 from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
 from mdr_core.quadrature import NODES, composite_rule
 from mdr_core.typing import Array, Flags, Indices, Parameter
-from mdr_core.validation import as_numbers, require_finite
+from mdr_core.validation import as_numbers, require_finite, single
 
 # Bound on the error of the sums over the pieces: several times the largest in the tests.
 _ROUNDING: Final = 2e-13
@@ -78,14 +78,16 @@ class Tabulated(Profile):
             *(np.array(as_numbers(("profile", name), each)) for name, each in (("r", r), ("f", f)))
         )
         self._end = float(np.abs(self.r).max())
-        self._breaks = tuple(sorted(float(b) for b in breaks))
-        for i, b in enumerate(breaks):
+        given = as_numbers(("profile", "breaks"), breaks).ravel().tolist()
+        self._breaks = tuple(sorted(given))
+        for i, b in enumerate(given):
             if not 0 < b < self._end:
                 detail = f"must lie between the axis and the last radius, {self._end:.6g}"
                 raise InputError(("profile", "breaks", i), detail)
-        if uncertainty is not None and not 0 <= uncertainty < np.inf:
+        path = ("profile", "uncertainty")
+        if uncertainty is not None and not 0 <= single(path, uncertainty) < np.inf:
             detail = "must be a standard uncertainty of the heights, positive or 0"
-            raise InputError(("profile", "uncertainty"), detail)
+            raise InputError(path, detail)
         self.uncertainty = uncertainty
         self.fit = fit_table(self.r, self.values, self._breaks, uncertainty)
         self.meets_points = uncertainty is not None and self.fit.rms <= _MET * uncertainty

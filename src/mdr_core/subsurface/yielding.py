@@ -5,7 +5,7 @@ Source: notes, §12; johnson, section 4.2.
 
 from collections.abc import Callable
 from functools import cache, lru_cache
-from math import ceil, cos, exp, inf, log, sin, sqrt
+from math import ceil, cos, exp, inf, log, sin
 from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
@@ -38,8 +38,8 @@ _ANGLES: Final = np.linspace(0, np.pi / 2, 4)
 _ACROSS, _STEPS = np.linspace(-1, 1, 5), 3.0
 # Factor by which a box shrinks, and part of the stress by which it varies in the last one.
 _SHRINK, _FLAT = 0.3, 4e-6
-# Relative accuracy of the force at the onset of yield: distance kept from forces of singular
-# stresses, step of the first slope, and square of the last step of the secant.
+# Relative accuracy of the force at the onset of yield, which bounds the product of its last two
+# steps. It is also the distance from forces of singular stresses, and the step of the first slope.
 _RTOL: Final = 1e-6
 # Contact coordinate over the radius of a flat below which no radius in double precision resolves
 # the stress beneath the edge: at this one it is too low by 5e-6 of its value.
@@ -215,7 +215,8 @@ def _onset(
 ) -> float:
     """Normal force at which the largest stress is `limit`, in the ratio of the forces of a case.
 
-    Secant steps in the logarithms, which are nearly in proportion, within a bracket.
+    Secant steps in the logarithms, which are nearly in proportion, and chords where they leave the
+    bracket. The error after two secant steps is of the order of their product.
     """
     force, ratio, _, e_star, *_ = case
     at = cache(lambda load: _under(profile, exp(load), *case[1:]))
@@ -234,7 +235,10 @@ def _onset(
     load = max(min(log(force), highest), lowest)
     # The first step takes the stress to grow like the mean pressure, which is exact for powers.
     means = [at(each).normal.mean_pressure for each in (load, load - _RTOL)]
-    before, excess, slope = load, 0.0, log(means[0] / means[1]) / _RTOL
+    slope = log(means[0] / means[1]) / _RTOL
+    # The excess at both ends of the bracket and at the load before, zero where it is not known.
+    below = above = excess = 0.0
+    before = load
     for _ in range(MAX_STEPS):
         value = _peak(foundations(at(load), body)[0][0], measure, nu)[0]
         found = min(max(log(max(value, TINY) / limit), -_REACH), _REACH)
@@ -242,14 +246,18 @@ def _onset(
             return 0.0
         if load == highest and found < 0:
             return singular
-        low, high = (low, load) if found > 0 else (load, high)
+        # An end that stays counts half in the next chord (Illinois).
+        if found > 0:
+            high, above, below = load, found, below / 2
+        else:
+            low, below, above = load, found, above / 2
         slope = (found - excess) / (load - before) if load != before else slope
-        before, excess, load = load, found, load - found / max(slope, 1 / _REACH)
-        if abs(load - before) <= sqrt(_RTOL):
-            return exp(load)
-        if not low < load < high:
-            ends = {lowest, highest} & {low, high}
-            load = min(ends, key=lambda end: abs(end - load)) if ends else (low + high) / 2
+        step, last = -found / max(slope, 1 / _REACH), load - before
+        if step == 0 or (excess and abs(step * last) <= _RTOL):
+            return exp(min(max(load + step, lowest), highest))
+        before, excess, load = load, found, min(max(load + step, low), high)
+        if load in (low, high) and below and above:
+            load = (low * above - high * below) / (above - below)
     raise DefectError("the search for the onset of yield did not converge")
 
 

@@ -23,17 +23,19 @@ from mdr_core.validation import (
     require_single_positive,
     require_tolerance,
     require_type,
+    require_whole,
 )
+from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.arguments import grid, one_amplitude
 from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.integrator import integrate
 from mdr_core.wear.worn_surface import WornSurface
 
-# Default of `resolution`, ...
-DEFAULT_RESOLUTION: Final = 24
-# ... its smallest value, ...
+# Default of `resolution`: ten times as accurate as 24 in nearly the same time.
+DEFAULT_RESOLUTION: Final = 48
+# Smallest `resolution`.
 COARSEST: Final = 8
-# ... and its largest.
+# Largest `resolution`.
 FINEST: Final = 96
 # Smallest tolerance of the integration over the cycles.
 TIGHTEST_INTEGRATION: Final = 1e-10
@@ -87,7 +89,8 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
         Twice the difference from a run on two thirds of the nodes with a looser integrator, the
         tolerance of that, and the rounding error of the contact before wear. With a break of the
-        profile in the worn annulus both runs may err alike: there their absolute difference counts.
+        profile in the worn annulus both runs may err alike: there their absolute difference counts,
+        and the error of the wear in the first cycle, whose friction work is known.
         The error of a normal force that wear takes away in full slip is relative to the one before.
         """
         worst = self._absolute_difference if self._has_break else 0.0
@@ -97,7 +100,18 @@ class WearEvolution(validity.ContactResults, WornSurface):
             worst = max(worst, float((np.abs(value - other) / np.where(size, size, 1.0)).max()))
         # The errors of two integrations may be equal.
         tolerance = _LOOSER * self.rtol if self.states else 0.0
-        return _SAFETY * worst + tolerance + self.tangential_contact.error_estimate
+        first = self._first_cycle_error if self._has_break and self.states else 0.0
+        return _SAFETY * worst + tolerance + first + self.tangential_contact.error_estimate
+
+    @property
+    def _first_cycle_error(self) -> float:
+        """Relative error of the wear in the first cycle, by its friction work [1]."""
+        initial = self.initial
+        state = AnnulusState.of(initial, initial.vector)
+        worn = 2 * np.pi * float(initial.maps.volume @ (state.pressure * state.slip))
+        worn *= initial.depth_unit * initial.length_unit**2
+        work = 4 * float(self.tangential_contact.dissipated_energy) * initial.cycle_unit
+        return abs(worn / (initial.wear_coefficient * work) - 1)
 
     @property
     def _whole_force(self) -> Array:
@@ -282,6 +296,7 @@ def solve(
     name, size = one_amplitude(tangential_displacement, tangential_force)
     require_single_positive(("wear_coefficient",), wear_coefficient)
     require_tolerance(rtol, TIGHTEST_INTEGRATION)
+    require_whole(("resolution",), resolution)
     if not COARSEST <= resolution <= FINEST:
         raise InputError(("resolution",), f"must lie from {COARSEST} to {FINEST}")
     for place, number in (

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Request
 from prometheus_client import generate_latest
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
-from mdr_core import __version__, profiles
+from mdr_core import COMPILED, __version__, profiles
 from mdr_service import health, observability, problems
 from mdr_service.api.documentation import PAGE_HEADERS, failures
 from mdr_service.schemas.answers import Catalogue, Health, ProfileField, ProfileKind
@@ -19,7 +19,7 @@ router = APIRouter(responses=failures(problems.HEADERS_TOO_LARGE))
 _DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("utf-8")
 # The text format of Prometheus.
 _METRICS: Final = "text/plain; version=0.0.4; charset=utf-8"
-_OK: Final = Health(status="ok", version=__version__)
+_OK: Final = Health(status="ok", version=__version__, compiled=COMPILED)
 _CATALOGUE: Final = Catalogue(
     profiles=[
         ProfileKind(

@@ -426,6 +426,10 @@ class Health(Answer):
 
     status: Literal["ok"] = Field(description="State: `ok`.")
     version: str = Field(description="Version of the service.")
+    compiled: bool = Field(
+        description="True if the loop of load histories is compiled: without, they take about 100 "
+        "times longer."
+    )
 
 
 class ProblemError(Answer):
