@@ -19,7 +19,7 @@ from mdr_core.typing import Array, Indices
 _THICK: Final = 0.03
 
 
-class Curve(adhesion.Curve):
+class LayerCurve(adhesion.Curve):
     """Adhesive equilibrium states of a profile and a layer over the contact coordinate."""
 
     def __init__(self, profile: Profile, c: float, layer: Layer) -> None:

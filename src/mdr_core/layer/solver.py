@@ -11,7 +11,7 @@ from mdr_core.elementwise import full, where
 from mdr_core.equivalent_1d import coordinate_from_radius
 from mdr_core.errors import InputError
 from mdr_core.inversion import invert
-from mdr_core.layer.adhesive import Curve
+from mdr_core.layer.adhesive import LayerCurve
 from mdr_core.layer.contact import LayerContact
 from mdr_core.layer.equation import LARGEST, largest_coordinate, states
 from mdr_core.layer_response import softening
@@ -71,7 +71,7 @@ def solve(
     if work_of_adhesion is not None:
         validation.require_single_positive(("material", "work_of_adhesion"), work_of_adhesion)
         c = sqrt(2 * pi) * sqrt(work_of_adhesion) / sqrt(modulus)
-        curve = Curve(profile, c, layer)
+        curve = LayerCurve(profile, c, layer)
         return adhesion.on_curve(curve, modulus, material, loads, range_of_adhesion)
     # Checks the loads as well.
     name, load = validation.only_one(("load",), loads)

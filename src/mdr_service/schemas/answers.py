@@ -52,7 +52,7 @@ class AnswerWarning(Answer):
     instead: Remedy | None = Field(description="Remedy, null where there is none.")
 
 
-class Threshold(Answer):
+class HoldsWhile(Answer):
     """Limit within which the model may leave out an effect; `below` or `above`, one per load."""
 
     effect: Literal["adhesion", "slip", "thickness", "yield", "shape"] = Field(
@@ -102,7 +102,7 @@ class ContactAnswer(SolvedAnswer):
         "pull-off under a prescribed depth, where it is infinite"
     )
     elastic_energy: list[float] = _energy("Elastic energy, of the contact")
-    holds_while: list[Threshold] = _HOLDS_WHILE
+    holds_while: list[HoldsWhile] = _HOLDS_WHILE
     data_error: list[float] = _number(
         "Error by the points of a table, an estimate relative to depth and force",
         default=None,
@@ -249,7 +249,7 @@ class TorsionAnswer(ContactAnswer):
 class StressAnswer(SolvedAnswer):
     """Requested fields by load and radius; the others are absent."""
 
-    holds_while: list[Threshold] = _HOLDS_WHILE
+    holds_while: list[HoldsWhile] = _HOLDS_WHILE
     radius: list[float] = _length("Radius r, requested or chosen")
     pressure: _Field = _pressure(f"Pressure p(r), by load and radius; {_NULL}", default=None)
     shear_stress: _Field = _pressure(
