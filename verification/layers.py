@@ -1,4 +1,4 @@
-"""Stiffness of an elastic layer on a rigid base, which the model of half-spaces neglects.
+"""Contact with an elastic layer on a rigid base, and the error of half-spaces in its place.
 
 Lebedev and Ufliand reduce the contact of a layer of thickness h, as MDR that of a half-space, to a
 line load q of the length 2a, here over E* and with a = 1:
@@ -97,7 +97,33 @@ def series() -> Iterator[Case]:
         yield _case("dimitriadis", "ball", profile, chi, 0.5, FLAT, force)
 
 
+def layers() -> Iterator[Case]:
+    """Contacts with a layer that the service computes with: punch, ball and cone, solved here."""
+    for name, profile, exponent in (
+        ("punch", {"kind": "flat_punch", "radius": 1.0}, np.inf),
+        ("ball", {"kind": "paraboloid", "radius": 1.0}, 2.0),
+        ("cone", {"kind": "cone", "slope": 2 / np.pi}, 1.0),
+    ):
+        for part, nu in ((0.05, 0.3), (0.2, 0.0), (0.5, 0.5), (1.0, 0.3), (2.0, 0.45)):
+            depth, excess = stiffening(part, nu, exponent)
+            ratio = 2.0 if exponent == np.inf else 2 * exponent / (exponent + 1)
+            force = (1 + excess) * ratio * depth ** (1 if exponent == np.inf else 1 + 1 / exponent)
+            body = {"youngs_modulus": 1 - nu**2, "poissons_ratio": nu}
+            layer = {"thickness": 1 / part, "base": "bonded"}
+            request = {
+                "profile": profile,
+                "material": {"bodies": ["rigid", body], "layer": layer},
+                "load": {"indentation_depth": depth},
+            }
+            case = f"{name} on a bonded layer, a/h = {part:g}, ν = {nu}: normal_force"
+            place = at("normal_force")
+            yield Case(
+                "lebedev", "integral equation", case, "/v1/normal", request, place, force, 1e-9
+            )
+
+
 def cases() -> Iterator[Case]:
     """Yield all cases of this module."""
+    yield from layers()
     yield from integral_equation()
     yield from series()

@@ -21,16 +21,18 @@ from mdr_core import (
     history,
     hysteresis,
     impact,
+    layer,
     normal,
     subsurface,
     tangential,
+    thresholds,
     torsion,
     validity,
     wear,
 )
 from mdr_core.errors import AccuracyError, DefectError, InputError, MDRError, Notice
 from mdr_core.history.slip_kernel import __file__ as _kernel
-from mdr_core.materials import RIGID, Body, Material, from_bodies
+from mdr_core.materials import RIGID, Body, Layer, Material, from_bodies
 from mdr_core.profiles import (
     KINDS,
     CappedParaboloid,
@@ -72,6 +74,7 @@ __all__ = [
     "FlatPunch",
     "Hyperboloid",
     "InputError",
+    "Layer",
     "MDRError",
     "Material",
     "Notice",
@@ -96,12 +99,14 @@ __all__ = [
     "history",
     "hysteresis",
     "impact",
+    "layer",
     "normal",
     "read_curve",
     "read_table",
     "slope_of_half_angle",
     "subsurface",
     "tangential",
+    "thresholds",
     "torsion",
     "validity",
     "wear",

@@ -14,7 +14,7 @@ the pull-off is the lowest load of all stable branches.
 Source: notes, §13.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, pi, sqrt
@@ -29,12 +29,12 @@ from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.elementwise import full, number, some, where
 from mdr_core.equivalent_1d import coordinate_from_radius
 from mdr_core.errors import InputError, Notice
-from mdr_core.extrema import largest_less_tension
+from mdr_core.extrema import LEAST_GAP, largest_with
 from mdr_core.materials import Material, normal_modulus
 from mdr_core.normal import CONTROLS, NormalContact
 from mdr_core.profiles import FlatPunch, Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Indices
 
 # Parts of c at which a state loses its stability.
 _SHARES: Final = {"indentation_depth": 0.5, "normal_force": 1.5}
@@ -68,13 +68,35 @@ class Curve:
     @cached_property
     def _nodes(self) -> Array:
         """Coordinates that resolve phi, ascending."""
-        profile, top = self.profile, min(_DISTANCES[-1], self.profile.domain)
+        profile, top = self.profile, min(_DISTANCES[-1], self.end)
         edges = np.array([0.0, *np.ravel(profile.coordinate_breaks), top])
         breaks = coordinate_from_radius(profile, np.array(profile.breaks, dtype=float))
         near = np.add.outer(np.append(0.0, breaks), [*-_DISTANCES, *_DISTANCES])
         between = np.linspace(edges[:-1], edges[1:], _IN_PIECE)
         nodes = np.unique(np.append(near, between))
-        return nodes[(nodes >= _DISTANCES[0]) & (nodes <= top)]
+        return nodes[(nodes >= max(_DISTANCES[0], self.start)) & (nodes <= top)]
+
+    @property
+    def start(self) -> float:
+        """Contact coordinate below which no state is stable."""
+        return 0.0
+
+    @property
+    def end(self) -> float:
+        """Largest contact coordinate, with which the profile ends."""
+        return float(self.profile.domain)
+
+    def correction(self, contact: "AdhesiveContact", load: Indices, r: Array) -> Array | float:
+        """Pressure over E* beyond the half-space's at radii, each under the load of an index."""
+        return 0.0
+
+    def pressed(self, *known: Any) -> NormalContact:
+        """Return a contact without adhesion; `known` are the arguments of `NormalContact`."""
+        return NormalContact(*known)
+
+    def stiffness(self, coordinate: Array) -> Array:
+        """dF_N/dd over E* at constant contact radius [length]."""
+        return 2 * self.profile.contact_radius(coordinate)
 
     def retraction(self, coordinate: Array) -> Array:
         """Delta_l [length]."""
@@ -86,8 +108,7 @@ class Curve:
             retraction = self.retraction(coordinate)
             if name == "indentation_depth":
                 return self.profile.depth(coordinate) - retraction
-            arm = 2 * self.profile.contact_radius(coordinate)
-            return self.profile.reduced_force(coordinate) - arm * retraction
+            return self.profile.reduced_force(coordinate) - self.stiffness(coordinate) * retraction
 
     def excess(self, share: float, coordinate: Array) -> Array:
         """phi/c less a share: a g'/Delta_l in excess of that at pull-off [1]."""
@@ -105,7 +126,7 @@ class Curve:
 
         nodes, values = self._nodes, height(self._nodes)
         stable = values > 0
-        end = self.profile.domain
+        end = self.end
         if not stable[-1] or (stable[0] and values[0] < values[1]):
             reason = (
                 f"to radius {end:.6g}, where the profile ends: extend it, or reduce the work"
@@ -175,7 +196,7 @@ class AdhesiveContact(NormalContact):
     def reference(self) -> NormalContact:
         """Contact without adhesion of the same radius."""
         known = self.profile, self.e_star, self.coordinate, self.control, self.material
-        vars(reference := NormalContact(*known))["contact_radius"] = self.contact_radius
+        vars(reference := self.curve.pressed(*known))["contact_radius"] = self.contact_radius
         return reference
 
     @property
@@ -201,8 +222,17 @@ class AdhesiveContact(NormalContact):
     @cached_property
     def maximum_pressure(self) -> Array:
         """Largest pressure in the contact [pressure]; the tension at its edge is infinite."""
-        rim = self.retraction / (pi * self.contact_radius)
-        return self.e_star * largest_less_tension(self.profile, self.coordinate, self.loaded, rim)
+        a, rim = (
+            np.ravel(self.contact_radius),
+            np.ravel(self.retraction / (pi * self.contact_radius)),
+        )
+
+        def tension(load: Indices, r: Array) -> Array:
+            square = np.maximum((a[load] - r) * (a[load] + r), LEAST_GAP * a[load] ** 2)
+            return self.curve.correction(self, load, r) - rim[load] * a[load] / np.sqrt(square)
+
+        largest = largest_with(self.profile, self.coordinate, self.loaded, tension)
+        return self.e_star * largest
 
     @cached_property
     def normal_stiffness(self) -> Array:
@@ -210,8 +240,12 @@ class AdhesiveContact(NormalContact):
 
         -inf at pull-off under a prescribed depth; 2 E* a on a flat punch, whose edge is fixed.
         """
+        punch = self.reference.normal_stiffness
+        if self.profile.has_no_partial_slip:
+            return punch
+        excess = self.curve.excess(_SHARES["normal_force"], self.coordinate)
         with np.errstate(divide="ignore"):
-            return self.reference.normal_stiffness * (1 - 1 / self._excess("indentation_depth"))
+            return punch * excess / self._excess("indentation_depth")
 
     def _excess(self, name: str) -> Array:
         """a g'/Delta_l in excess of that at pull-off; infinite under a flat punch [1]."""
@@ -245,7 +279,7 @@ class AdhesiveContact(NormalContact):
     @property
     def method(self) -> str:
         """Method: closed forms only under a flat punch."""
-        return "closed_form" if self.profile.has_no_partial_slip else "quadrature"
+        return self.reference.method if self.profile.has_no_partial_slip else "quadrature"
 
     @cached_property
     def edge_errors(self) -> Array:
@@ -294,7 +328,7 @@ class AdhesiveContact(NormalContact):
         """Return a field of the reference, by load, less that of the retracted flat punch."""
         whole = np.asarray(field(self.reference))
         ends = zip(*map(np.ravel, (self.contact_radius, self.retraction)), strict=True)
-        punches = (NormalContact(FlatPunch(a), self.e_star, step) for a, step in ends)
+        punches = (self.curve.pressed(FlatPunch(a), self.e_star, step) for a, step in ends)
         taken = np.reshape([field(punch) for punch in punches], whole.shape)
         # At the edge the tension outweighs a logarithmic pressure.
         infinite = np.isinf(taken)
@@ -348,9 +382,22 @@ def solve(
     for field, value in {"e_star": modulus, "work_of_adhesion": work_of_adhesion}.items():
         validation.require_single_positive(("material", field), value)
     loads = (indentation_depth, normal_force, contact_radius)
-    name, load = validation.only_one(("load",), dict(zip(CONTROLS, loads, strict=True)))
-    validation.require_finite(("load", name), load)
     curve = Curve(profile, sqrt(2 * pi) * sqrt(work_of_adhesion) / sqrt(modulus))
+    given = dict(zip(CONTROLS, loads, strict=True))
+    return on_curve(curve, modulus, material, given, range_of_adhesion)
+
+
+def on_curve(
+    curve: Curve,
+    modulus: float,
+    material: Material | None,
+    loads: Mapping[str, ArrayLike | None],
+    range_of_adhesion: float,
+) -> AdhesiveContact:
+    """Return the adhesive contact of a curve of states under one of the loads; see `solve`."""
+    profile = curve.profile
+    name, load = validation.only_one(("load",), loads)
+    validation.require_finite(("load", name), load)
     coordinate, retraction, states = _state(curve, name, load, modulus)
     at_pull_off = float(curve.retraction(curve.at_pull_off))
     contact = AdhesiveContact(
@@ -389,7 +436,7 @@ def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, 
         detail = f"is {side}: there is no contact"
         raise InputError(("load", name, *validation.first_index(below)), detail, below)
     if profile.has_no_partial_slip:
-        depth = amount / (2 * profile.contact_radius(amount)) if of_force else amount
+        depth = amount / curve.stiffness(amount) if of_force else amount
         return np.maximum(depth, 0.0), np.maximum(-depth, 0.0), states
     validation.require_inside(
         ("load", name), amount > curve.load(name, curve.stable[name][1][-1]), profile

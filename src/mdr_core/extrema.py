@@ -23,11 +23,12 @@ _Field = Callable[[Indices, Array], Array]
 # Samples between two singular radii, clustered at both. The pressure under the power r^100 has the
 # narrowest smooth peak, next to the contact edge: four samples lie above half its height.
 _SAMPLES: Final = 64
-# Relative variation of the stress in the last bracket, and distance from the edge over a, doubled,
-# within which the infinite tension of adhesion is taken to be constant.
+# Relative variation of the stress in the last bracket.
 _LEAST_STEP: Final = 1e-13
 # Relative step of the derivative of a searched maximum, whose own error is about 1e-13.
 _DIFFERENCE: Final = 1e-5
+LEAST_GAP: Final = 1e-13
+"""1 - (r/a)^2 below which the infinite tension of adhesion is taken to be constant."""
 # Points across the bracket of a peak, in parts of it. Each interval of a table, whose interpolation
 # may have a peak in every one, is sampled as finely.
 _NINE: Final = np.linspace(0.0, 1.0, 9)
@@ -126,24 +127,31 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
     return invert(sloped, target, start, low, high, profile.kind)
 
 
-def largest_less_tension(profile: Profile, edge: Array, loaded: Flags, rim: Array) -> Array:
-    """Return the largest stress less the tension rim/sqrt(1 - (r/a)^2) of adhesion [1].
+def largest_with(profile: Profile, edge: Array, loaded: Flags, added: _Field) -> Array:
+    """Return the largest sum of the stress and of another field, each of a contact [1].
+
+    Where the stress is known to fall from the axis, the other field falls as well.
 
     Parameters
     ----------
     profile, edge, loaded : see `largest_stress`.
-    rim : tension at the axis, where it is smallest [1].
+    added : the field, finite, of indices of loads and radii.
     """
     ends, pressed = np.atleast_1d(edge), np.atleast_1d(loaded)
     falls = pressed & profile.falls_from_axis(ends)
     infinite = _infinite(profile, ends, pressed & ~falls)
-    found = pressed & ~falls & ~infinite
+    found = np.flatnonzero(pressed & ~falls & ~infinite)
     largest = np.where(infinite, inf, 0.0)
+    axis = added(np.arange(ends.size), np.zeros(ends.size))
     if falls.any():
         largest[falls] = profile.axis_stress(ends[falls])
-    if found.any():
-        largest[found] = _search(profile, ends[found], rim=np.atleast_1d(rim)[found])
-    return largest.reshape(np.shape(edge))[()] - rim
+    if found.size:
+
+        def above_axis(load: Indices, radius: Array) -> Array:
+            return added(found[load], radius) - axis[found[load]]
+
+        largest[found] = _search(profile, ends[found], added=above_axis)
+    return (largest + axis).reshape(np.shape(edge))[()]
 
 
 def _infinite(
@@ -189,11 +197,11 @@ def _curve() -> BPoly:
     return BPoly(np.linalg.solve(np.transpose(basis), height), ends, extrapolate=False)
 
 
-def _search(profile: Profile, edge: Array, *slip: Array, rim: Array | None = None) -> Array:
+def _search(profile: Profile, edge: Array, *slip: Array, added: _Field | None = None) -> Array:
     """The largest stress of contacts with one profile, where it is finite; shape (loads,).
 
     The stress is sampled between its singular radii. Every candidate for the highest peak is then
-    bracketed more and more closely. With `rim`, rim [1/sqrt(1 - (r/a)^2) - 1] is subtracted.
+    bracketed more and more closely. `added` is a field that vanishes on the axis.
     """
     c = [profile.contact_radius(part) for part in slip[1:]]
 
@@ -202,11 +210,7 @@ def _search(profile: Profile, edge: Array, *slip: Array, rim: Array | None = Non
         if slip:
             annulus = Annulus(outer, slip[0][load], c[0][load], coordinate=slip[1][load])
         stress = profile.pressure_kernel_at(annulus, at)
-        if rim is None:
-            return stress
-        ratio = profile.contact_radius(at) / profile.contact_radius(outer)
-        height = np.sqrt(np.maximum((1 - ratio) * (1 + ratio), _LEAST_STEP))
-        return stress - rim[load] * (1 / height - 1)
+        return stress if added is None else stress + added(load, profile.contact_radius(at))
 
     best = np.zeros(edge.size)
     fixed = np.append(0.0, profile.coordinate_breaks)

@@ -7,7 +7,7 @@ stable state, as on unloading, and zero after the pull-off.
 Source: notes, §15.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
@@ -20,9 +20,11 @@ from scipy.optimize import least_squares
 from scipy.special import chdtrc, fdtrc, stdtrit
 
 from mdr_core import adhesion, normal, residuals, validity
+from mdr_core import layer as layers
 from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
-from mdr_core.materials import RIGID, Body, Material, from_bodies
+from mdr_core.layer import DepthCurve
+from mdr_core.materials import RIGID, Body, Layer, Material, from_bodies
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.residuals import FALSE_ALARM, ROUNDING
@@ -155,6 +157,7 @@ def solve(
     segment: str | None = None,
     poissons_ratio: float | None = None,
     indenter: Body | Literal["rigid"] = "rigid",
+    layer: Layer | None = None,
 ) -> Fit:
     """Return the parameters of a contact that fit a measured curve best.
 
@@ -177,6 +180,8 @@ def solve(
     poissons_ratio : Poisson's ratio of the sample [1], for its Young's modulus
         E = (1 - nu^2)/(1/E* - 1/E_i*).
     indenter : the other body, of E_i*.
+    layer : elastic layer that is the sample, with its Poisson's ratio on a bonded base; not with
+        adhesion.
 
     Returns
     -------
@@ -217,12 +222,29 @@ def solve(
     if deepest is not None and "contact_point" not in fit and depth.max() > deepest[0]:
         place = ("indentation_depth", int(depth.argmax()))
         raise InputError(place, "lies beyond the end of the profile: give a longer one")
-    model = _Model(profile, depth, force, tuple(fit), e_star, np.ones(depth.size, dtype=bool))
+    curve = None if layer is None else _on_layer(profile, layer, depth, fit, body_thickness)
+    touches = np.ones(depth.size, dtype=bool)
+    model = _Model(profile, depth, force, tuple(fit), e_star, touches, curve)
     if "work_of_adhesion" in fit:
         result = _with_adhesion(model, noise, body_thickness)
     else:
         result = model.result(model.best(), noise, body_thickness)
     return result if poissons_ratio is None else _of_sample(result, poissons_ratio, indenter)
+
+
+def _on_layer(
+    profile: Profile,
+    layer: Layer,
+    depth: Array,
+    fit: Sequence[str],
+    body_thickness: float | None,
+) -> DepthCurve:
+    """Return the force over depth on a layer, or an InputError where it cannot be fitted."""
+    if "work_of_adhesion" in fit:
+        raise InputError(("layer",), "cannot be combined with a fitted work_of_adhesion")
+    if body_thickness is not None:
+        raise InputError(("layer",), "and body_thickness exclude each other: give one of them")
+    return DepthCurve.up_to(profile, layer, max(float(depth.max()), 2 * float(np.ptp(depth))))
 
 
 def _of_sample(found: Fit, ratio: float, indenter: Body | Literal["rigid"]) -> Fit:
@@ -374,12 +396,19 @@ def _adhesive(curve: "_Model") -> "tuple[_Model, _Parameters]":
 
 
 def _forces(
-    profile: Profile, pressed: Array, work: float, touches: Flags
+    profile: Profile,
+    pressed: Array,
+    work: float,
+    touches: Flags,
+    on_layer: DepthCurve | None = None,
 ) -> tuple[Array, Array, Array]:
     """Forces over E* at depths from first contact, and their slopes in the depth and in w/E*.
 
     With adhesion the force at less depth than that of the least force is the least.
     """
+    if on_layer is not None:
+        force, slope = on_layer(np.maximum(pressed, 0.0))
+        return force, np.where(pressed > 0, slope, 0.0), np.zeros_like(pressed)
     if not work:
         contact = normal.solve(profile, 1.0, indentation_depth=np.maximum(pressed, 0.0))
         slope = np.where(pressed > 0, contact.normal_stiffness, 0.0)
@@ -411,10 +440,14 @@ class _Model:
     e_star: float | None
     touches: Flags
     """Points that are not after a pull-off."""
+    on_layer: DepthCurve | None = None
+    """Force over depth on a layer, None on a half-space."""
 
     @property
     def deepest(self) -> float:
-        """Largest depth on the profile [length]."""
+        """Largest depth on the profile, or of the curve on a layer [length]."""
+        if self.on_layer is not None:
+            return self.on_layer.deepest
         return float((self.profile.largest_loads or (inf,))[0])
 
     @property
@@ -452,7 +485,7 @@ class _Model:
         starts: list[tuple[float, _Parameters]] = []
         for work in works.tolist():
             pressed = coarse.depth - tried[:, None]
-            forces, *_ = _forces(self.profile, pressed, work, coarse.touches)
+            forces, *_ = _forces(self.profile, pressed, work, coarse.touches, self.on_layer)
             for point, reduced in zip(tried.tolist(), forces, strict=True):
                 squares, modulus, offset = coarse.linear(reduced)
                 values = modulus, point, offset, work * modulus
@@ -522,7 +555,10 @@ class _Model:
         """Return the forces of the model, and their slopes in the fitted parameters."""
         e_star, d0, offset, work = (parameters[name] for name in PARAMETERS)
         ratio = work / e_star
-        forces, by_depth, by_work = _forces(self.profile, self.depth - d0, ratio, self.touches)
+        pressed = self.depth - d0
+        forces, by_depth, by_work = _forces(
+            self.profile, pressed, ratio, self.touches, self.on_layer
+        )
         columns = {
             # At constant w.
             "e_star": forces - ratio * by_work,
@@ -548,12 +584,18 @@ class _Model:
         scatter = float(np.sqrt(np.sum(np.square(residual)) / free))
         inverse, scale, q = _inverted(slopes, self.fit)
         deviations = np.linalg.norm(inverse, axis=1)
-        material = Material(found["e_star"], body_thickness=body_thickness)
+        layer = None if self.on_layer is None else self.on_layer.layer
+        material = Material(found["e_star"], body_thickness=body_thickness, layer=layer)
         work = found["work_of_adhesion"]
-        solve = partial(adhesion.solve, work_of_adhesion=work) if work else normal.solve
+        solve: Callable[..., NormalContact] = normal.solve
+        if work:
+            solve = partial(adhesion.solve, work_of_adhesion=work)
+        if layer is not None:
+            solve = layers.solve
         deepest = max(float(self.depth.max()) - found["contact_point"], 0.0)
         contact = solve(self.profile, material, indentation_depth=deepest)
         condition = float(np.linalg.norm(inverse, 2)) if self.fit else 1.0
+        interpolated = 0.0 if self.on_layer is None else self.on_layer.error
         sigma = noise or scatter
         errors = sigma * deviations / scale
         is_noisy = scatter > ROUNDING * float(np.abs(self.force).max())
@@ -571,7 +613,7 @@ class _Model:
             residual,
             sigma,
             misfit,
-            condition * contact.error_estimate,
+            condition * (contact.error_estimate + interpolated),
             (
                 *self._doubts(code, misfit),
                 *self._open(found, scatter * deviations / scale, scatter if is_noisy else 0.0),
@@ -605,7 +647,8 @@ class _Model:
         least = free * scatter**2 * (1 + quantile**2 / free)
 
         def within(place: float) -> bool:
-            reduced, *_ = _forces(self.profile, self.depth - place, 0.0, self.touches)
+            pressed = self.depth - place
+            reduced, *_ = _forces(self.profile, pressed, 0.0, self.touches, self.on_layer)
             return self.linear(reduced)[0] <= least
 
         if within(self.farthest):

@@ -1,7 +1,7 @@
 """Effective moduli of a contact from the elastic constants of two bodies."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal, TypeVar, get_args
 
 from mdr_core.errors import InputError
@@ -12,6 +12,12 @@ RIGID: Final = "rigid"
 Held = Literal["contacts", "stem", "free", "block"]
 """How a round body is held: between two contacts, on a stem or by its equator, as a free body whose
 depth counts against its centre, or as a bump of a block."""
+UNUSABLE: Final = (
+    "is computed with in normal and adhesive contact, its surface fields and fits alone: with "
+    "friction, twist, wear, impact, or stresses beneath the surface the equations of a half-space "
+    "do not hold; give body_thickness for a check in place of the layer, or use finite elements"
+)
+"""Reason why a layer is rejected."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +44,28 @@ class Body:
 
 
 @dataclass(frozen=True)
+class Layer:
+    """Elastic layer of constant thickness on a rigid base."""
+
+    thickness: float
+    """h [length]."""
+    base: Literal["bonded", "frictionless"] = "bonded"
+    """`bonded`, or `frictionless`: the layer slides on its base, but does not lift off."""
+    poissons_ratio: float | None = None
+    """nu of the layer [1], needed on a bonded base; `from_bodies` takes it from the body."""
+    share: float = 1.0
+    """Share of the layer's material in the compliance 1/E* [1], which `from_bodies` computes."""
+
+    def __post_init__(self) -> None:
+        place = ("material", "layer")
+        if self.base not in ("bonded", "frictionless"):
+            raise InputError((*place, "base"), 'must be "bonded" or "frictionless"')
+        require_positive((*place, "thickness"), self.thickness)
+        if self.poissons_ratio is not None:
+            require_poissons_ratio((*place, "poissons_ratio"), self.poissons_ratio)
+
+
+@dataclass(frozen=True)
 class Material:
     """Elastic constants of two bodies in contact, or only the effective moduli."""
 
@@ -57,8 +85,13 @@ class Material:
     """G of a twist, 1/G = 1/G1 + 1/G2 [pressure]; None where it is not given."""
     held: tuple[Held, Held] = ("contacts", "contacts")
     """How the bodies are held, if they are round."""
+    layer: Layer | None = None
+    """Layer with which `layer.solve` computes; E* is that of half-spaces of the same materials."""
 
     def __post_init__(self) -> None:
+        if self.layer is not None and self.body_thickness is not None:
+            detail = "and body_thickness, a check alone, exclude each other: give one of them"
+            raise InputError(("material", "layer"), detail)
         for name in ("e_star", "g_star", "body_thickness", "shear_modulus"):
             if (value := getattr(self, name)) is not None:
                 require_positive(("material", name), value)
@@ -71,8 +104,10 @@ _Number = TypeVar("_Number", bound=Parameter)
 def normal_modulus(e_star: _Number | Material) -> _Number | float:
     """Return E* [pressure], that of a material or the number itself; raise InputError if it is not.
 
-    Its value is not checked.
+    Its value is not checked. Raises InputError for a layer, with which only `layer.solve` computes.
     """
+    if isinstance(e_star, Material) and e_star.layer is not None:
+        raise InputError(("material", "layer"), UNUSABLE)
     value = e_star.e_star if isinstance(e_star, Material) else e_star
     _require_both_bodies("e_star", value)
     return value
@@ -110,7 +145,10 @@ def _require_both_bodies(name: str, value: object) -> None:
 
 
 def from_bodies(
-    bodies: Sequence[Body | Literal["rigid"]], *, body_thickness: float | None = None
+    bodies: Sequence[Body | Literal["rigid"]],
+    *,
+    body_thickness: float | None = None,
+    layer: Layer | None = None,
 ) -> Material:
     """Return the effective moduli and Dundurs' beta of two bodies in contact.
 
@@ -127,6 +165,7 @@ def from_bodies(
     body_thickness : thickness of the more compliant body, bonded to a rigid base [length]. The
         contact remains that of half-spaces: `model_error` and the warning `thin_body` count it.
         A ball has its own size as well, of which the larger error counts.
+    layer : thickness and base of the more compliant body, the second one of two equal bodies.
 
     Raises
     ------
@@ -159,8 +198,15 @@ def from_bodies(
     twist = sum(1 / body.shear_modulus for body in parts)
     ratios = tuple(body.poissons_ratio for body in parts)
     moduli = 1 / normal, 1 / shear, _dundurs_beta(bodies)
+    if layer is not None:
+        largest, nu = max(zip(compliances, ratios, strict=True), key=lambda each: each[0])
+        nu = ratios[-1] if compliances[-1] == largest else nu
+        if layer.poissons_ratio not in {None, nu}:
+            detail = "differs from Poisson's ratio of the more compliant body: leave it out"
+            raise InputError(("material", "layer", "poissons_ratio"), detail)
+        layer = replace(layer, poissons_ratio=nu, share=largest / normal)
     held = tuple(body.held if isinstance(body, Body) else "contacts" for body in bodies)
-    return Material(*moduli, ratios, share, body_thickness, 1 / twist, (held[0], held[1]))
+    return Material(*moduli, ratios, share, body_thickness, 1 / twist, (held[0], held[1]), layer)
 
 
 def _dundurs_beta(bodies: Sequence[Body | Literal["rigid"]]) -> float:

@@ -240,6 +240,8 @@ class NormalContact(validity.ContactResults):
             validity.Finding("singular", np.isinf(self.mean_pressure), lambda: sharp),
             validity.infinite_maximum(self),
         ]
+        if self.material is not None and self.material.layer is not None:
+            found.append(validity.layer_strain(self.indentation_depth, self.material.layer))
         if isinstance(self.profile, Tabulated):
             of_table = [validity.tip(self, self.profile), validity.smoothed(self, self.profile)]
             return [validity.table_end(self), *of_table, *found]

@@ -28,6 +28,8 @@ _NEGATIVE: Final = {
 _LARGEST_COUNT: Final = 10**9
 TIGHTEST, LOOSEST = 1e-13, 1e-3
 """Bounds of `rtol`: rounding errors of sums, and an error visible in a plot."""
+LEAST_CHANGE, MOST_CHANGE = 1e-4, 0.1
+"""Bounds of `holds_within`: from the largest on, its limits, of first order, are off by a third."""
 UNRESOLVED: Final = 0.25
 """Relative error above which there is no answer."""
 

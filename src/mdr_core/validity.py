@@ -1,8 +1,8 @@
 """Limits of validity of the model: findings with stable codes.
 
-The codes are `table_end`, `smoothed`, `tip`, `half_space`, `thin_body`, `large_strain`, `plastic`,
-`elastic_similarity` and `impossible_moduli`; `singular` and `accuracy` come with the results, and
-`yield` from `mdr_core.subsurface`.
+The codes are `table_end`, `smoothed`, `tip`, `half_space`, `thin_body`, `large_strain`,
+`layer_strain`, `plastic`, `elastic_similarity` and `impossible_moduli`; `singular` and `accuracy`
+come with the results, and `yield` from `mdr_core.subsurface`.
 
 Source: notes, §8.
 """
@@ -19,7 +19,7 @@ from mdr_core import half_space
 from mdr_core.elementwise import every, full, number, some, where
 from mdr_core.errors import Notice, Remedy
 from mdr_core.half_space import ASSUMED_RATIO, LoadedContact
-from mdr_core.materials import Material
+from mdr_core.materials import Layer, Material
 from mdr_core.profiles import Profile, Tabulated
 from mdr_core.results import Results
 from mdr_core.typing import Array, Flags, Parameter
@@ -44,6 +44,8 @@ _LIMITS: Final = {
     "thin_body": 0.1,
     # Pressure of Hertz, 3/2 of the mean, of round bodies over E*: about the largest strain.
     "large_strain": 0.1,
+    # Depth over the thickness of a layer, the size of its strain.
+    "layer_strain": 0.1,
     # |beta|, by which normal and tangential contact are coupled.
     "elastic_similarity": 0.05,
 }
@@ -177,6 +179,8 @@ def model_error(contact: SolvedContact, material: Material | None) -> Array:
     is_socket = any(map(half_space.is_concave, contact.normal.profile.body_radii or ()))
     counted = 0.0 if is_socket else errors.parts[0]
     error = errors.force + np.maximum(layer - counted, 0.0)
+    if material is not None and material.layer is not None:
+        error = error + half_space.on_layer(contact.normal, material.layer)
     if contact.g_star is not None:
         beta = 0.0 if material is None else material.dundurs_beta or 0.0
         ratio = half_space.largest_ratio(material)
@@ -334,6 +338,19 @@ def _large_strain(contact: LoadedContact) -> Finding:
         )
 
     return _above_limit("large_strain", part, message, "finite_elements")
+
+
+def layer_strain(depth: Array, layer: Layer) -> Finding:
+    """Return `layer_strain`: depths that are not small against the thickness of the layer."""
+    part = np.abs(depth) / layer.thickness
+
+    def message() -> str:
+        return (
+            f"the depth is {extremes(part)[1]:.2g} times the thickness of the layer, which strains "
+            "it beyond linear elasticity: use a smaller load, or finite elements"
+        )
+
+    return _above_limit("layer_strain", part, message, "finite_elements")
 
 
 def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Finding:

@@ -39,6 +39,7 @@ def is_short(name: str, query: Query) -> bool:
         or query.material.has("yield_strength")
         or query.material.has("work_of_adhesion")
         or any(each.control == "maximum_pressure" for each in query.controls.values())
+        or query.material.has("layer")
     )
     size = query.numbers + _PER_LOAD * (query.path.samples if query.path else query.loads)
     terms = len(query.profile.terms) if isinstance(query.profile, SeriesProfile) else 1

@@ -14,10 +14,11 @@ from mdr_core import equivalent_1d
 from mdr_core.abel.annulus import Annulus, whole
 from mdr_core.adhesion import AdhesiveContact
 from mdr_core.elementwise import every, number
+from mdr_core.layer import LayerContact
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Indices
 from mdr_core.validation import (
     checked_radii,
     require_single_profile,
@@ -66,6 +67,9 @@ def pressure(contact: Contact, radius: ArrayLike) -> Array:
     """
     if isinstance(contact, AdhesiveContact):
         return contact.superposed(lambda part: pressure(part, radius))
+    if isinstance(contact, LayerContact):
+        beyond = _beyond_half_space(contact, contact.correction, radius)
+        return pressure(contact.half_space, radius) + beyond
     contact = _pressed(contact)
     shape = contact.contact_radius.shape
     a, coordinate = by_load(contact.profile, shape, contact.contact_radius, contact.coordinate)
@@ -101,7 +105,8 @@ def normal_displacement(contact: Contact, radius: ArrayLike) -> Array:
     """
     if isinstance(contact, AdhesiveContact):
         return contact.superposed(lambda part: normal_displacement(part, radius))
-    contact = _pressed(contact)
+    layer = contact if isinstance(contact, LayerContact) else None
+    contact = layer or _pressed(contact)
     profile, shape = contact.profile, contact.contact_radius.shape
     columns = contact.contact_radius, contact.coordinate, contact.indentation_depth
     a, coordinate, depth = by_load(profile, shape, *columns)
@@ -114,6 +119,8 @@ def normal_displacement(contact: Contact, radius: ArrayLike) -> Array:
             outer = r[~inside]
             edge = np.full(outer.shape, a[load])
             result[~inside] = profile.outer_displacement(edge, outer, coordinate[load])
+            if layer:
+                result[~inside] = layer.displacement(load, outer, result[~inside])
         return result
 
     return fill(shape, values, radius)
@@ -139,6 +146,9 @@ def foundation_load(contact: Contact, radius: ArrayLike) -> Array:
     """
     if isinstance(contact, AdhesiveContact):
         return contact.superposed(lambda part: foundation_load(part, radius))
+    if isinstance(contact, LayerContact):
+        beyond = _beyond_half_space(contact, contact.load_correction, radius)
+        return foundation_load(contact.half_space, radius) + beyond
     contact = _pressed(contact)
     shape = contact.contact_radius.shape
     a, coordinate = by_load(contact.profile, shape, contact.contact_radius, contact.coordinate)
@@ -147,6 +157,19 @@ def foundation_load(contact: Contact, radius: ArrayLike) -> Array:
         return contact.e_star * _depth_left(contact.profile, a[load], coordinate[load], r)
 
     return fill(shape, values, radius)
+
+
+def _beyond_half_space(
+    contact: LayerContact, correction: Callable[[Indices, Array], Array], radius: ArrayLike
+) -> Array:
+    """Return a correction of the layer over E* as a field, zero outside the contact."""
+
+    def values(load: int, r: Array) -> Array:
+        inside = r <= np.ravel(contact.contact_radius)[load]
+        added = correction(np.full(r.size, load), np.where(inside, r, 0.0))
+        return np.where(inside, contact.e_star * added, 0.0)
+
+    return fill(contact.contact_radius.shape, values, radius)
 
 
 def _pressed(contact: Contact) -> NormalContact:

@@ -15,6 +15,7 @@ from mdr_core.doubles import ADJACENT, ROUNDING
 from mdr_core.elementwise import broadcast, some, where
 from mdr_core.errors import InputError
 from mdr_core.history import ContactState, LoadHistory
+from mdr_core.layer import LayerContact
 from mdr_core.normal import NormalContact, solve
 from mdr_core.tangential import TangentialContact
 from mdr_core.torsion import TorsionalContact
@@ -56,7 +57,8 @@ def edges(contact: Contact | ContactState) -> Edges:
     if isinstance(contact, AdhesiveContact):
         a = np.ravel(contact.contact_radius)
         return Edges(a, a * np.ravel(contact.edge_errors), 0 * a, 0 * a)
-    require_type("contact", contact, get_args(Contact), needed)
+    if not isinstance(contact, LayerContact):
+        require_type("contact", contact, get_args(Contact), needed)
     normal = contact.normal
     profile, a = normal.profile, normal.contact_radius
     # The coordinate resolves the distance from a flat.

@@ -10,13 +10,14 @@ from typing import Any, Final
 
 import numpy as np
 
-from mdr_core import adhesion, profiles, subsurface, validity
+from mdr_core import adhesion, layer, profiles, subsurface, thresholds, validity
 from mdr_core import normal as normal_contact
 from mdr_core import tangential as tangential_contact
 from mdr_core.elementwise import every
 from mdr_core.errors import DefectError, InputError, Notice
 from mdr_core.history import LoadHistory
 from mdr_core.impact import Impact
+from mdr_core.materials import UNUSABLE
 from mdr_core.normal import ACCURACY, NormalContact, inaccurate
 from mdr_core.results import Results
 from mdr_core.tangential import TangentialContact
@@ -24,7 +25,7 @@ from mdr_core.torsion import TorsionalContact
 from mdr_core.typing import Array, Flags
 from mdr_core.validity import MODEL_ERRORS, sources_of
 from mdr_service.schemas.contacts import Choice, NormalQuery, Query, TangentialQuery
-from mdr_service.schemas.fields import LoadedQuery
+from mdr_service.schemas.fields import LoadedQuery, StressQuery
 from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.torsion import TorsionQuery
 from mdr_service.schemas.wear import WearQuery
@@ -50,6 +51,7 @@ def solve_normal(query: NormalQuery | LoadedQuery | WearQuery | TorsionQuery) ->
         detail = "is undetermined with adhesion, under tension at the edge: give another load"
         raise InputError(("load", "maximum_pressure"), detail)
     solve: Any = adhesion.solve if given else normal_contact.solve
+    solve = layer.solve if query.material.has("layer") else solve
     contact: NormalContact = solve(**arguments, **given)
     return contact
 
@@ -91,6 +93,10 @@ def body(query: Query) -> Arguments:
     Raises InputError where adhesion meets friction or yield, or has a range and no work.
     """
     material = query.material
+    if material.has("layer"):
+        other = not isinstance(query, NormalQuery | StressQuery) or material.has("yield_strength")
+        if other or query.has("friction_coefficient"):
+            raise InputError(("material", "layer"), UNUSABLE)
     if material.has("work_of_adhesion"):
         if query.has("friction_coefficient"):
             raise InputError(("material", "work_of_adhesion"), adhesion.AdhesiveContact.unusable)
@@ -124,7 +130,26 @@ def paired(name: str, given: Choice, load: Choice) -> Arguments:
 def contact_result(query: NormalQuery, source: NormalContact | TangentialContact) -> Result:
     """Return the quantities of a contact under its loads, with or without friction."""
     values, infinite = contact_values(query, source)
-    return response(query, source, values, infinite=infinite)
+    return response(query, source, values, unchecked=holds_while(query, source), infinite=infinite)
+
+
+def holds_while(query: NormalQuery | StressQuery, source: Contact) -> Result:
+    """Return the member `holds_while` of a response, empty unless it is requested."""
+    if not query.has("holds_within"):
+        return {}
+    if isinstance(source, LoadHistory):
+        raise InputError(("holds_within",), "needs a load in place of a history")
+    found = [
+        {
+            "effect": limit.effect,
+            "quantity": limit.quantity,
+            "above" if limit.is_least else "below": np.full(query.loads, limit.value).tolist(),
+            "changes": limit.changes,
+            "instead": limit.instead,
+        }
+        for limit in thresholds.of_contact(source.normal, query.holds_within)
+    ]
+    return {"holds_while": found}
 
 
 def contact_values(

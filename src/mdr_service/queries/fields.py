@@ -16,6 +16,7 @@ from mdr_core.validation import TIGHTEST
 from mdr_service.queries.contacts import (
     Contact,
     Result,
+    holds_while,
     require_one_of,
     response,
     singular,
@@ -92,6 +93,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         query,
         source,
         {"radius": radius} | values,
+        unchecked=holds_while(query, source),
         infinite=infinite,
         method=method,
         error=max(fields.own_error(source), integrated) + at_edges,
@@ -156,5 +158,6 @@ def _require_consistent(query: StressQuery) -> None:
 
 def _method(contact: NormalContact, names: list[Any]) -> str:
     """Return the most expensive method of the fields."""
+    on_layer = contact.material is not None and contact.material.layer is not None
     closed = _FOUNDATION.union(contact.profile.closed_forms)
-    return contact.method if closed.issuperset(names) else "quadrature"
+    return contact.method if on_layer or closed.issuperset(names) else "quadrature"

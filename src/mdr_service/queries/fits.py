@@ -5,6 +5,7 @@ import numpy as np
 from mdr_core import fit
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
+from mdr_core.materials import Layer
 from mdr_service.queries.contacts import ADHESION, Result, checked, model_errors, profile
 from mdr_service.schemas.contacts import as_body
 from mdr_service.schemas.fits import FitQuery
@@ -28,6 +29,7 @@ def solve_fit(query: FitQuery) -> Fit:
         detail = "is not an input of a fit: add work_of_adhesion to fit to determine it"
         raise InputError(("material", "work_of_adhesion"), detail)
     known = query.material if query.has("material") else None
+    in_material = known.effective.layer if known else None
     return fit.solve(
         profile(query.profile),
         indentation_depth=query.indentation_depth,
@@ -39,6 +41,7 @@ def solve_fit(query: FitQuery) -> Fit:
         segment=query.segment,
         poissons_ratio=query.poissons_ratio,
         indenter=as_body(query.indenter),
+        layer=Layer(**vars(query.layer)) if query.has("layer") else in_material,
     )
 
 

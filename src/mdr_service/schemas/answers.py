@@ -17,6 +17,7 @@ _stiffness = partial(quantity, "force/length")
 _energy = partial(quantity, "force*length")
 _velocity = partial(quantity, "length/time")
 _volume = partial(quantity, "length^3")
+_limit = partial(quantity, "as the quantity")
 
 _Field = list[list[float | None]]
 _Map = list[list[list[float | None]]]
@@ -50,6 +51,25 @@ class AnswerWarning(Answer):
     value: float | None = Field(description="Size of the finding, null where it has none.")
     limit: float | None = Field(description="Limit that the value exceeds, null where it has none.")
     instead: Remedy | None = Field(description="Remedy, null where there is none.")
+
+
+class HoldsWhile(Answer):
+    """Limit within which the model may leave out an effect; `below` or `above`, one per load."""
+
+    effect: Literal["adhesion", "slip", "thickness", "yield", "shape"] = Field(
+        description="Effect that the model leaves out."
+    )
+    quantity: str = Field(description="Quantity that is limited.")
+    below: list[float] = _limit("Largest value", default=None)
+    above: list[float] = _limit("Least value", default=None)
+    changes: str = Field(description="Result that changes by `holds_within` at the limit.")
+    instead: str = Field(description="Model beyond the limit, or simplest kind within it.")
+
+
+_HOLDS_WHILE = left_out(
+    "With `holds_within`: values of what the model leaves out, up to or from which leaving it out "
+    "changes a result by no more than that."
+)
 
 
 class SolvedAnswer(Answer):
@@ -92,6 +112,7 @@ class ContactAnswer(SolvedAnswer):
         "pull-off under a prescribed depth, where it is infinite"
     )
     elastic_energy: list[float] = _energy("Elastic energy, of the contact")
+    holds_while: list[HoldsWhile] = _HOLDS_WHILE
     data_error: list[float] = _number(
         "Error by the points of a table, an estimate relative to depth and force",
         default=None,
@@ -242,6 +263,7 @@ class TorsionAnswer(ContactAnswer):
 class StressAnswer(SolvedAnswer):
     """Requested fields by load and radius; the others are absent."""
 
+    holds_while: list[HoldsWhile] = _HOLDS_WHILE
     radius: list[float] = _length("Radius r, requested or chosen")
     pressure: _Field = _pressure(f"Pressure p(r), by load and radius; {_NULL}", default=None)
     shear_stress: _Field = _pressure(

@@ -1,5 +1,6 @@
 """Requests about contacts under a load, and the parts that all requests share."""
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
@@ -7,6 +8,7 @@ from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
 from mdr_core import materials
+from mdr_core.validation import LEAST_CHANGE, MOST_CHANGE
 from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.quantities import (
     ScalarOrArray,
@@ -149,6 +151,31 @@ def thickness() -> Any:
     )
 
 
+class ElasticLayer(Strict):
+    """Elastic layer on a rigid base: the more compliant body."""
+
+    thickness: float = positive("length", "Thickness h of the layer")
+    base: Literal["bonded", "frictionless"] = Field(
+        description="How the layer is held: `bonded` to its base, or sliding on it without friction"
+    )
+    poissons_ratio: float = quantity(
+        "1",
+        "Poisson's ratio ν of the layer, needed on a bonded base unless the material has it",
+        default=None,
+        gt=-1,
+        le=0.5,
+    )
+
+
+def layer() -> Any:
+    """Return the optional field of an elastic layer."""
+    return left_out(
+        "Layer on a rigid base, with which `/v1/normal` (adhesive contacts too), the normal fields "
+        "of `/v1/stress` and `/v1/normal/fit` compute, up to a = 10 h; E* is the modulus of "
+        "half-spaces of the same materials"
+    )
+
+
 class Elastic(Strict):
     """Material of a contact."""
 
@@ -171,6 +198,12 @@ class Elastic(Strict):
         default=None,
     )
     body_thickness: float = thickness()
+    layer: ElasticLayer = layer()
+
+    @property
+    def on_base(self) -> materials.Layer | None:
+        """Layer of the core, None where there is none."""
+        return materials.Layer(**vars(self.layer)) if self.has("layer") else None
 
 
 class Bodies(Elastic):
@@ -186,6 +219,7 @@ class Bodies(Elastic):
         return materials.from_bodies(
             [as_body(each) for each in self.bodies],
             body_thickness=self.body_thickness,
+            layer=self.on_base,
         )
 
 
@@ -216,12 +250,16 @@ class Moduli(Elastic):
     def effective(self) -> materials.Material:
         """Effective moduli."""
         known = (self.poissons_ratio,) if self.has("poissons_ratio") else ()
+        layer = self.on_base
+        if layer is not None and layer.poissons_ratio is None:
+            layer = replace(layer, poissons_ratio=self.poissons_ratio)
         return materials.Material(
             self.e_star,
             self.g_star,
             poissons_ratios=known,
             body_thickness=self.body_thickness,
             shear_modulus=self.shear_modulus,
+            layer=layer,
         )
 
 
@@ -283,9 +321,22 @@ class Query(Strict):
         return 0
 
 
+def holds_within() -> Any:
+    """Return the optional field of the tolerance of `holds_while`."""
+    return quantity(
+        "1",
+        "Relative change of a result, for which `holds_while` lists the values of what the model "
+        "leaves out: adhesion, slip, thickness, yield and shape",
+        default=None,
+        ge=LEAST_CHANGE,
+        le=MOST_CHANGE,
+    )
+
+
 class NormalQuery(Query):
     """Profile pressed into an elastic half-space without friction."""
 
+    holds_within: float = holds_within()
     load: Load = Field(description="Exactly one control, such as the depth or the force.")
 
 

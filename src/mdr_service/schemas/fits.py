@@ -4,7 +4,15 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.contacts import Axes, BodyOrRigid, Material, Query, thickness
+from mdr_service.schemas.contacts import (
+    Axes,
+    BodyOrRigid,
+    ElasticLayer,
+    Material,
+    Query,
+    layer,
+    thickness,
+)
 from mdr_service.schemas.fields import OnceEach
 from mdr_service.schemas.quantities import Signed, left_out, positive, quantity
 from mdr_service.settings import SETTINGS
@@ -51,3 +59,4 @@ class FitQuery(Query):
     indenter: BodyOrRigid = Field(
         default="rigid", description="The body that indents the sample, for its `youngs_modulus`."
     )
+    layer: ElasticLayer = layer()

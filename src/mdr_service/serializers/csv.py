@@ -13,10 +13,11 @@ import orjson
 
 MEDIA_TYPE: Final = "text/csv"
 PLAIN_TEXT: Final = "text/plain"
-_WARNINGS: Final = "warnings"
+# Lists of objects.
+_LISTS: Final = frozenset({"warnings", "holds_while"})
 # Lists over the cycles of a history or at its end: these have no row.
 _NOT_IN_ROWS: Final = frozenset(
-    {_WARNINGS, "sources", "slip_fronts", "energy_per_cycle", "secant_stiffness", "correlation"}
+    {*_LISTS, "slip_fronts", "energy_per_cycle", "secant_stiffness", "correlation"}
 )
 # Given over the radius only, and repeated for each load.
 _BY_RADIUS: Final = frozenset({"initial_profile"})
@@ -31,7 +32,7 @@ def write(result: Mapping[str, Any]) -> bytes:
         values = {
             name: np.atleast_1d(value)
             for name, value in result.items()
-            if name != _WARNINGS and not isinstance(value, Mapping)
+            if name not in _LISTS and not isinstance(value, Mapping)
         }
     if "radius" in values:
         columns = _by_position(values, "radius")

@@ -29,8 +29,8 @@ def write(result: Mapping[str, Any]) -> bytes:
 def _flat(result: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the members of a result, those of nested objects with the names joined by dots."""
     for name, value in result.items():
-        if name == "final_state":
-            # Its lists differ in length; JSON has it.
+        if name in {"final_state", "holds_while"}:
+            # Their lists differ in length; JSON has them.
             continue
         if isinstance(value, Mapping):
             yield from _flat(value, f"{prefix}{name}.")

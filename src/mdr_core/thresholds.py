@@ -1,0 +1,132 @@
+"""Values up to which effects that the model leaves out change a result by no more than a tolerance.
+
+Each follows from the contact radius a, g'(a) and F_N(a) to first order in the tolerance t:
+
+* adhesion: w = E* (t a g'(a))^2/(2 pi a) changes the contact radius under a given force; under a
+  flat punch w = E* (t d)^2/(2 pi a) changes the depth;
+* slip: F_x/mu = F_N(a) - F_N(a (1 - 2 t)) changes the tangential compliance;
+* thickness: h at which a rigid base changes the force at a given depth;
+* yield: Y = 2 tau_max below a paraboloid (Tresca);
+* shape: the contact radius at which a paraboloid of the same curvature replaces a sphere.
+
+Source: manual, Which model does my case need?
+"""
+
+from functools import lru_cache
+from math import atanh, pi
+from typing import Final, NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from mdr_core.elementwise import full, where
+from mdr_core.errors import InputError
+from mdr_core.half_space import ASSUMED_RATIO, stiffening
+from mdr_core.normal import NormalContact
+from mdr_core.profiles import Paraboloid, Sphere
+from mdr_core.typing import Array
+from mdr_core.validation import LEAST_CHANGE, MOST_CHANGE, single
+
+# Depths z/a between which the largest shear stress below a paraboloid lies: at 0.38 for nu = 0, and
+# at 0.54 for nu = 1/2. Source: johnson, section 4.2.
+_DEPTHS: Final = np.linspace(0.37, 0.55, 60)
+
+
+class Threshold(NamedTuple):
+    """Limit within which the model may leave out an effect."""
+
+    effect: str
+    """`adhesion`, `slip`, `thickness`, `yield` or `shape`."""
+    quantity: str
+    """Name of the quantity that is limited."""
+    value: Array
+    """The limit, of each load."""
+    changes: str
+    """Result that changes by the tolerance at the limit."""
+    instead: str
+    """Model beyond the limit, or for `shape` the kind that does within it."""
+
+    @property
+    def is_least(self) -> bool:
+        """True if the model holds from the value on, false if it holds up to the value."""
+        return self.effect in {"thickness", "yield"}
+
+
+def of_contact(contact: NormalContact, tolerance: float) -> tuple[Threshold, ...]:
+    """Return the limits of a contact of a half-space without adhesion, where they are known.
+
+    Yield is known of paraboloids, and the shape of spheres. The thickness is that of a body bonded
+    to a rigid base, of Poisson's ratio 0.3 where it is unknown.
+
+    Parameters
+    ----------
+    contact : contact of `normal.solve`.
+    tolerance : relative change of a result, from 1e-4 to 0.1.
+
+    Raises
+    ------
+    InputError : another tolerance, or another contact.
+
+    Examples
+    --------
+    >>> from mdr_core.profiles import Paraboloid
+    >>> from mdr_core.normal import solve
+    >>> slip = of_contact(solve(Paraboloid(1.0), 1.0, contact_radius=0.1), 0.01)[1]
+    >>> round(float(slip.value) / (4e-3 / 3), 4)
+    0.0588
+    """
+    if not LEAST_CHANGE <= single(("holds_within",), tolerance) <= MOST_CHANGE:
+        detail = f"must lie from {LEAST_CHANGE} to {MOST_CHANGE}"
+        raise InputError(("holds_within",), detail)
+    if type(contact) is not NormalContact:
+        detail = (
+            "needs a contact of half-spaces without adhesion: the limits are those of its results"
+        )
+        raise InputError(("holds_within",), detail)
+    profile, e_star, a = contact.profile, contact.e_star, contact.contact_radius
+    flat, loaded = profile.has_no_partial_slip, contact.loaded
+    with np.errstate(all="ignore"):
+        arm = contact.indentation_depth if flat else a * profile.depth_slope(contact.coordinate)
+        work = where(loaded, e_star * np.square(tolerance * arm) / (2 * pi * a), 0.0)
+        stick = np.maximum(a * (1 - 2 * tolerance), profile.first_radius)
+        within = 0.0 if flat else e_star * profile.force_within(np.ravel(stick)).reshape(a.shape)
+    slip, friction = contact.normal_force - within, "tangential_force / friction_coefficient"
+    changes = "indentation_depth" if flat else "contact_radius"
+    thickness = a / stiffening(tolerance, contact.material)
+    found = [
+        Threshold("adhesion", "work_of_adhesion", work, changes, "adhesion"),
+        Threshold("slip", friction, slip, "tangential_displacement", "tangential"),
+        Threshold("thickness", "thickness", thickness, "normal_force", "layer"),
+    ]
+    depth = "indentation_depth"
+    if isinstance(profile, Paraboloid):
+        ratios = () if contact.material is None else contact.material.poissons_ratios
+        least = 2 * _shear_below(min(ratios, default=ASSUMED_RATIO)) * contact.maximum_pressure
+        found.append(Threshold("yield", "yield_strength", least, depth, "elastic_plastic"))
+    if isinstance(profile, Sphere):
+        radius = full(_like_paraboloid(tolerance), a) * profile.radius
+        found.append(Threshold("shape", "contact_radius", radius, depth, "paraboloid"))
+    return tuple(found)
+
+
+@lru_cache(maxsize=64)
+def _shear_below(nu: float) -> float:
+    """tau_max/p(0) on the axis below a paraboloid. Source: johnson, section 4.2."""
+    z = _DEPTHS
+    radial = -(1 + nu) * (1 - z * np.arctan(1 / z)) + 1 / (2 * (1 + z * z))
+    stress = (radial + 1 / (1 + z * z)) / 2
+    top = int(np.clip(stress.argmax(), 1, z.size - 2))
+    curve = np.polyfit(z[top - 1 : top + 2] - z[top], stress[top - 1 : top + 2], 2)
+    return float(curve[2] - curve[1] ** 2 / (4 * curve[0]))
+
+
+@lru_cache(maxsize=64)
+def _like_paraboloid(tolerance: float) -> float:
+    """a/R at which the depth of a sphere under its force differs from that of a paraboloid [1]."""
+
+    def excess(x: float) -> float:
+        depth = x * atanh(x)
+        force = (1 + x * x) * atanh(x) - x
+        return depth / (3 * force / 4) ** (2 / 3) - 1 - tolerance
+
+    return float(brentq(excess, 1e-2 if tolerance > 1e-4 else 1e-3, 1 - 1e-12))
