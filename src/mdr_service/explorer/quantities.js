@@ -70,6 +70,8 @@ export const QUANTITIES = {
   force_offset: ["Force offset", "force"],
   work_of_adhesion: ["Work of adhesion", "N/m"],
   noise: ["Standard deviation of the forces", "force"],
+  youngs_modulus: ["Young's modulus of the sample", "pressure"],
+  youngs_modulus_error: ["Its standard deviation", "pressure"],
   residual: ["Measured less fitted forces", "force"],
   friction_coefficient: ["Coefficient of friction µ", "1"],
 };
