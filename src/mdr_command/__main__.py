@@ -13,7 +13,7 @@ from mdr_command import ExitStatus
 
 
 class Command(NamedTuple):
-    """Command with its summary, and its module with `run` and, for arguments, `declare`."""
+    """A command: its summary, and its module with `run` and, if it has arguments, `declare`."""
 
     summary: str
     example: str
@@ -82,7 +82,7 @@ def main(given: Sequence[str] | None = None) -> int:
     """Run a command line and return the exit status."""
     _open_streams()
     if isinstance(sys.stdout, TextIOWrapper):
-        # Formulas and symbols of texts are shown on every terminal.
+        # UTF-8 lets every terminal show the formulas and symbols of the texts.
         sys.stdout.reconfigure(errors="backslashreplace")
     try:
         status = _run(sys.argv[1:] if given is None else given)
@@ -100,9 +100,9 @@ def main(given: Sequence[str] | None = None) -> int:
 
 
 def _open_streams() -> None:
-    """Open the standard streams that the caller closed: on the null device, which is not written.
+    """Open the standard streams that the caller closed, on the null device.
 
-    The next file or socket would otherwise take the place of standard output.
+    Otherwise the next file or socket would receive what is written to standard output.
     """
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
@@ -132,7 +132,7 @@ def _run(given: Sequence[str]) -> int:
 def parser_of(loaded: Container[str]) -> argparse.ArgumentParser:
     """Return the parser of all commands, with the arguments of those that are `loaded`."""
     parser = argparse.ArgumentParser(prog="mdr", description=_ABOUT)
-    # That of the core, whose import takes a third of a second.
+    # The version of the core is read without importing it, which takes a third of a second.
     shown = f"mdr {version('mdr-contact')}"
     parser.add_argument("--version", action="version", version=shown, help="print it and exit")
     commands = parser.add_subparsers(required=True, metavar="command", title="commands")

@@ -41,7 +41,7 @@ _OTHER_OPTIONS: Final = frozenset(
     {"output", "size", "units", "table", "area_coefficients", "largest_height", "length_unit"}
 )
 _AREA_OPTIONS: Final = {"profile.largest_height": "largest_height"}
-# Names of parameters that cannot be words of a sentence.
+# Names of parameters that cannot occur as ordinary words in a sentence.
 _NAME: Final = re.compile(r"\w+_\w+")
 _ONCE: Final = "is given more than once; several loads are a range (--help), or JSON"
 _REQUEST: Final = "a request is a JSON object"
@@ -160,9 +160,9 @@ def _content(arguments: argparse.Namespace) -> bytes:
 
 
 def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object] | None:
-    """Return the profile of a table or an area function, or None without.
+    """Return the profile given by a table or an area function; None if neither is given.
 
-    The parameters then need some kind.
+    The query parameters then need a placeholder for the kind of profile.
     """
     file, area, unit = (
         vars(arguments).get(name) for name in ("table", "area_coefficients", "length_unit")
@@ -256,7 +256,7 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
 
 
 def _option(name: str, names: Container[str]) -> str:
-    """Return a parameter of the service as the option; other names as they are."""
+    """Return the option of a parameter of the service; other names are unchanged."""
     return f"--{name.replace('_', '-')}" if name and name in names else name
 
 

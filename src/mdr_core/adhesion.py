@@ -1,7 +1,7 @@
 """Adhesive contact of any profile after Johnson, Kendall and Roberts (JKR).
 
-An adhesive contact of radius a is the contact without adhesion of the same radius, its reference,
-less the state of a flat punch that is retracted by
+The reference of an adhesive contact of radius a is the contact of that radius without adhesion. The
+adhesive contact is the reference less a flat punch that is retracted by
 
     Delta_l(a) = sqrt(2 pi a w/E*),    d = g(a) - Delta_l,    F_N = F_0(a) - 2 E* a Delta_l,
 
@@ -52,7 +52,8 @@ _JKR: Final = 5.0
 class Curve:
     """Equilibrium states of one profile over the contact coordinate, with c = sqrt(2 pi w/E*).
 
-    Loads are depths [length], and F_N/E* [length^2] under the name `normal_force`.
+    A load is a depth [length] or, under the name `normal_force`, the reduced force F_N/E*
+    [length^2].
     """
 
     def __init__(self, profile: Profile, c: float) -> None:
@@ -90,7 +91,7 @@ class Curve:
             return self.profile.reduced_force(coordinate) - arm * retraction
 
     def excess(self, share: float, coordinate: Array) -> Array:
-        """phi/c less a share: a g'/Delta_l in excess of that at pull-off [1]."""
+        """phi/c less a share: the excess of a g'/Delta_l over its value at pull-off [1]."""
         with np.errstate(all="ignore"):
             punch = self.profile.has_no_partial_slip
             slope = inf if punch else self.profile.depth_slope(coordinate)
@@ -100,7 +101,7 @@ class Curve:
         share = _SHARES[name]
 
         def height(coordinate: Array) -> Array:
-            """(phi - level)/(phi + level): root finding takes no infinite values."""
+            """The form (phi - level)/(phi + level) is finite, as root finding requires."""
             return 1 - 2 * share / (2 * share + self.excess(share, coordinate))
 
         nodes, values = self._nodes, height(self._nodes)
@@ -141,7 +142,7 @@ class Curve:
 
 
 def _roots(function: Callable[..., Array], low: Array, high: Array, *given: Array) -> Array:
-    """Return the roots in brackets; the nearer end where rounding leaves no change of sign."""
+    """Return the root in each bracket, or its nearer end if rounding leaves no sign change."""
     if not low.size:
         return low
     found = find_root(function, (low, high), args=given)
@@ -153,12 +154,12 @@ def _roots(function: Callable[..., Array], low: Array, high: Array, *given: Arra
 class AdhesiveContact(NormalContact):
     """Profile in adhesive contact with a half-space, under any number of loads.
 
-    Results are those of a `NormalContact`, and the pull-off.
+    It has the results of a `NormalContact`, and the pull-off.
     """
 
     curve: Curve
     retraction: Array
-    """Retraction from the reference [length]: Delta_l, or less on a flat punch."""
+    """Retraction from the reference [length]: Delta_l, or less than Delta_l on a flat punch."""
     tabor_number: float = inf
     """Tabor's number from Delta_l at pull-off; infinite without a range of adhesion [1]."""
     states: int = 1
@@ -214,7 +215,7 @@ class AdhesiveContact(NormalContact):
             return self.reference.normal_stiffness * (1 - 1 / self._excess("indentation_depth"))
 
     def _excess(self, name: str) -> Array:
-        """a g'/Delta_l in excess of that at pull-off; infinite under a flat punch [1]."""
+        """Excess of a g'/Delta_l over its value at pull-off; infinite under a flat punch [1]."""
         if self.profile.has_no_partial_slip:
             return full(inf, self.coordinate)
         excess = self.curve.excess(_SHARES[name], self.coordinate)
@@ -228,7 +229,7 @@ class AdhesiveContact(NormalContact):
 
     @property
     def data_error(self) -> Array | None:
-        """That of the reference."""
+        """Condition number of the reference contact."""
         return self.reference.data_error
 
     @property
@@ -250,8 +251,8 @@ class AdhesiveContact(NormalContact):
     def error_estimates(self) -> Array:
         """Bound of the error of each load's results [1].
 
-        Results that may vanish are compared with the sum of the sizes of their two parts, those of
-        the reference and of the retraction. The stiffness is infinite at pull-off.
+        The error of a result that may vanish is relative to the sum of the absolute values of its
+        two parts: the reference and the retraction. The stiffness is infinite at pull-off.
         """
         change = 3 * self.profile.steepness * self.edge_errors
         stable = self._excess("indentation_depth")
@@ -302,7 +303,7 @@ def solve(
 ) -> AdhesiveContact:
     """Return the adhesive contact under a prescribed depth, force or contact radius.
 
-    The state is the outermost stable one, in which the contact is after unloading.
+    The state is the outermost stable one, which the contact reaches by unloading.
 
     Source: jkr; popov-adhesion; notes, §13.
 
@@ -355,7 +356,7 @@ def solve(
 
 
 def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, Array, int]:
-    """Coordinate and retraction under each load, and the most states under one of them."""
+    """Coordinate and retraction under each load, and the largest number of states under one."""
     profile, states = curve.profile, 1
     if name == "contact_radius":
         validation.require_positive(("load", name), load)
@@ -370,7 +371,7 @@ def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, 
     of_force = name == "normal_force"
     unit = e_star if of_force else 1.0
     amount, least = load / unit, curve.least[name]
-    # Under a tip as sharp as the root of r the contact vanishes at zero load.
+    # Under a tip as sharp as sqrt(r) the contact vanishes at zero load.
     below = np.asarray(amount < least * (1 + ROUNDING) if least else amount <= 0)
     if some(below):
         pull_off = "pull-off force" if of_force else "pull-off depth"

@@ -11,8 +11,10 @@ TINY: Final = float(np.finfo(float).tiny)
 ADJACENT: Final = 4 * EPS
 """Relative distance within which two numbers are the same but for a few roundings."""
 ROUNDING: Final = 16 * EPS
-"""Relative rounding error of a short sum of products, and of a root of one, with room."""
+"""Bound, with a margin, on the relative rounding error of a short sum of products and of its square
+root."""
 LARGEST: Final = 1e290
-"""Largest result, and inverse of the smallest, of which sums of a few products are accurate."""
+"""Sums of a few products are accurate if their factors lie between the inverse of this number and
+this number."""
 LOG_RANGE: Final = 600.0
 """Bound on the logarithm of a ratio of radii: exp(-600) of 1e-50 is subnormal."""

@@ -15,20 +15,21 @@ from mdr_core.inversion import MAX_STEPS
 from mdr_core.profiles import Paraboloid, Profile, RoundedPunch
 from mdr_core.typing import Array, Flags, Indices
 
-# A stress at a radius, given as a contact coordinate, under the load of that index; all (m,).
+# Stress at radii, given as contact coordinates, under the loads of these indices; all (m,).
 _Field = Callable[[Indices, Array], Array]
 
-# Samples between two singular radii, clustered at both. The pressure under the power r^100 has the
-# narrowest smooth peak, next to the contact edge: four samples lie above half its height.
+# Number of samples between two singular radii, at both of which they cluster. The pressure under
+# the power r^100 has the narrowest smooth peak, next to the contact edge: four samples lie above
+# half its height.
 _SAMPLES: Final = 64
-# Relative variation of the stress in the last bracket, and distance from the edge over a, doubled,
-# within which the infinite tension of adhesion is taken to be constant.
+# Relative variation of the stress in the last bracket. The tension of adhesion, infinite at the
+# edge, counts as constant within half this distance from the edge, relative to a.
 _LEAST_STEP: Final = 1e-13
-# Points across the bracket of a peak, in parts of it. Each interval of a table, whose interpolation
-# may have a peak in every one, is sampled as finely.
+# Relative positions of the points across the bracket of a peak. Each interval of a table is sampled
+# at these positions too, because its interpolation may have a peak in every interval.
 _NINE: Final = np.linspace(0.0, 1.0, 9)
-# Size of log(s/b) up to which one curve of Bernstein polynomials serves all rounded punches, whose
-# contacts are similar; number and degree of the polynomials, which leave 2e-14.
+# All contacts of rounded punches are similar. One curve of Bernstein polynomials serves them up to
+# this absolute value of log(s/b); number and degree of the polynomials leave an error of 2e-14.
 _CURVED, _PIECES, _DEGREE = 14.0, 28, 16
 
 
@@ -110,7 +111,7 @@ def _infinite(
     for b in profile.infinite_pressure_radii:
         begins = c <= b
         if slip and not profile.has_no_partial_slip:
-            # A radius just beyond a flat may round to that of the flat.
+            # A radius just beyond a flat may round to the radius of the flat.
             begins = where(b == profile.first_radius, slip[1] <= 0, begins)
         infinite = infinite | (loaded & begins & (b <= a))
     return infinite
@@ -180,10 +181,10 @@ def _between(stops: Array, count: int) -> Array:
 
 
 def _sampled(field: _Field, load: Indices, samples: Array, best: Array) -> _Brackets:
-    """Brackets around the samples that rise above the others, whose largest value goes to `best`.
+    """Brackets around the samples that exceed their neighbours; the largest sample goes to `best`.
 
-    Between its neighbours a peak is taken to exceed the sample by no more than the sample exceeds
-    the lower one of them.
+    A peak is assumed to exceed its sample by at most as much as the sample exceeds the lower of its
+    two neighbours.
     """
     values = field(np.repeat(load, samples.shape[1]), samples.ravel()).reshape(samples.shape)
     best[load] = values.max(axis=1)
@@ -198,11 +199,11 @@ def _sampled(field: _Field, load: Indices, samples: Array, best: Array) -> _Brac
 
 
 def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
-    """Zoom into each bracket around its highest point; the top of its peak goes to `best`.
+    """Zoom into each bracket around its highest point, and write the top of its peak to `best`.
 
-    The peak is taken to exceed the highest of the nine points by no more than that exceeds the
-    lowest one: a bracket that stays below the highest peak is left. In the last bracket the
-    stress or the place varies by rounding errors.
+    The peak is assumed to exceed the highest of the nine points by at most as much as that point
+    exceeds the lowest. A bracket whose peak must stay below `best` is dropped. In the last bracket
+    the stress or the place varies by rounding errors.
     """
     load, low, high = brackets
     for _ in range(MAX_STEPS):

@@ -41,10 +41,10 @@ class Material:
     poissons_ratios: tuple[float, ...] = ()
     """Poisson's ratios of the elastic bodies [1], empty where they are unknown."""
     profile_share: float | None = None
-    """Share of the first body, which has the profile, in 1/E* [1]; None where it is unknown."""
+    """Share in 1/E* of the first body, which has the profile [1]; None where it is unknown."""
     body_thickness: float | None = None
-    """Thickness of the more compliant body on a rigid base [length]; None for a half-space or, of a
-    `Sphere`, a ball."""
+    """Thickness of the more compliant body on a rigid base [length]; None means a half-space or,
+    for a `Sphere`, a ball."""
     shear_modulus: float | None = None
     """G of a twist, 1/G = 1/G1 + 1/G2 [pressure]; None where it is not given."""
 
@@ -59,7 +59,7 @@ _Number = TypeVar("_Number", bound=Parameter)
 
 
 def normal_modulus(e_star: _Number | Material) -> _Number | float:
-    """Return E* [pressure], that of a material or the number itself; raise InputError if it is not.
+    """Return E* [pressure] of a material, or the number itself; raise InputError otherwise.
 
     Its value is not checked.
     """
@@ -69,7 +69,7 @@ def normal_modulus(e_star: _Number | Material) -> _Number | float:
 
 
 def shear_modulus(g_star: _Number | Material | None) -> _Number | float:
-    """Return G* [pressure], that of a material or the number itself; raise InputError if it is not.
+    """Return G* [pressure] of a material, or the number itself; raise InputError otherwise.
 
     Its value is not checked.
     """
@@ -81,7 +81,7 @@ def shear_modulus(g_star: _Number | Material | None) -> _Number | float:
 
 
 def twist_modulus(shear_modulus: _Number | Material | None) -> _Number | float:
-    """Return G of a twist [pressure], that of a material or the number itself.
+    """Return the shear modulus G of a twist [pressure], from a material or the number itself.
 
     Its value is not checked. Raises InputError if there is none: G* does not determine it.
     """
@@ -114,9 +114,10 @@ def from_bodies(
     Parameters
     ----------
     bodies : two of `Body` or "rigid", at least one of them elastic; the first has the profile.
-    body_thickness : thickness of the more compliant body, bonded to a rigid base [length]. The
-        contact remains that of half-spaces: `model_error` and the warning `thin_body` count it.
-        Without it a `Sphere` counts as a ball of the thickness 2R, other profiles as half-spaces.
+    body_thickness : thickness of the more compliant body, bonded to a rigid base [length]. Results
+        remain those for half-spaces; the thickness enters `model_error` and the warning
+        `thin_body`. Without a thickness a `Sphere` counts as a ball of the thickness 2R, and other
+        profiles count as half-spaces.
 
     Raises
     ------
@@ -151,7 +152,7 @@ def from_bodies(
 
 
 def _dundurs_beta(bodies: Sequence[Body | Literal["rigid"]]) -> float:
-    """Dundurs' beta, signed as first body minus second. Source: dundurs."""
+    """Dundurs' beta, the part of the first body minus the part of the second. Source: dundurs."""
     mismatch, total = 0.0, 0.0
     for sign, body in zip((1, -1), bodies, strict=True):
         if isinstance(body, Body):

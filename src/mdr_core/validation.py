@@ -23,9 +23,9 @@ _NEGATIVE: Final = {
     "normal_velocity": ": approach is positive",
 }
 TIGHTEST, LOOSEST = 1e-13, 1e-3
-"""Bounds of `rtol`: rounding errors of sums, and an error visible in a plot."""
+"""Bounds of `rtol`: the rounding error of sums, and an error visible in a plot."""
 UNRESOLVED: Final = 0.25
-"""Relative error above which there is no answer."""
+"""Relative error above which a result is rejected."""
 
 
 def require_type(name: str, value: object, types: Any, needed: str) -> None:
@@ -33,10 +33,10 @@ def require_type(name: str, value: object, types: Any, needed: str) -> None:
 
     Parameters
     ----------
-    name : that of the argument.
-    value : the argument; one with a reason why it is `unusable` here is rejected as well.
+    name : name of the argument.
+    value : the argument; it is also rejected if it has an attribute `unusable` with a reason.
     types : a type, or several.
-    needed : words for these types in the message.
+    needed : description of these types in the message.
     """
     if reason := getattr(value, "unusable", ""):
         raise InputError((name,), reason)
@@ -142,7 +142,7 @@ def require_finite(path: tuple[str | int, ...], values: Array) -> None:
 
 
 def as_curve(places: str, **given: ArrayLike) -> tuple[Array, Array]:
-    """Return two lists of a measured curve by their names, as arrays of one length.
+    """Return the two named lists of a measured curve as arrays of equal length.
 
     Raises InputError for numbers that are not finite, and for lists of different lengths, in which
     `places` stands for the values of the first.

@@ -37,7 +37,7 @@ class Polylines(NamedTuple):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ContactStates:
-    """States of many contacts of one profile; each by its index is a `ContactState`."""
+    """States of many contacts of one profile; indexing returns a `ContactState`."""
 
     contact: ContactState
     """Profile, moduli and coefficient of friction of all contacts."""
@@ -82,9 +82,9 @@ def advance_many(
     indentation_depth: ArrayLike,
     tangential_displacement: ArrayLike,
 ) -> ContactStates:
-    """Return the states of many contacts after one straight step of each, exactly.
+    """Return the exact states of many contacts after one straight step of each.
 
-    Each contact has the results of `advance`, in a tenth of the time or less.
+    Each contact has the results of `advance`, in at most a tenth of its time.
 
     Source: mdr-5, Eqs. (5.4)-(5.9); notes, §10.
 
@@ -140,7 +140,7 @@ def advance_many(
 
 
 def _repeated(state: ContactState, count: int) -> ContactStates:
-    """Return several contacts in one state."""
+    """Return copies of one state for several contacts."""
     vertices, *load_point = state.polyline
     ends = len(vertices) * np.arange(1, count + 1)
     load_points = np.tile(load_point, (count, 1)).T

@@ -1,9 +1,9 @@
 """Sequential loops of load histories: the polyline after each step, and the path of the slip front.
 
 Every load point depends on the one before, so there is nothing for NumPy to vectorise. Cython
-compiles this file as it stands, with the C types of `slip_kernel.pxd`; uncompiled it gives the same
-bits, about a hundred times slower. One file holds all functions, since Cython inlines within a
-module only.
+compiles this file as it stands, with the C types of `slip_kernel.pxd`; uncompiled it returns
+bit-identical results, about a hundred times slower. One file holds all functions, since Cython
+inlines within a module only.
 """
 
 from mdr_core.history.slip_layout import NORMAL, SLOPE
@@ -27,7 +27,7 @@ class PolylineStack:
 
     The corner C is the place between V_k and V_k+1 at which the second of the two sums falls to
     its value at P'. The other sum of C is its value on the segment; between C and P' it grows
-    alone. If the axis exceeds P' as well, all springs slip, and C lies on the axis.
+    alone. If the vertex on the axis exceeds P' as well, all springs slip, and C lies on the axis.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ class PolylineStack:
                 self.straight = True
 
     def _stick(self, deeper: float, further: float) -> None:
-        """Extend the polyline straight to the load point; one segment for one straight line."""
+        """Extend the polyline straight to the load point, by one segment for each straight line."""
         below = self.top
         if self.straight and below > 0:
             span = self.rows[below, NORMAL] - self.rows[below - 1, NORMAL]
@@ -158,7 +158,7 @@ class PolylineStack:
         self._extend(below, slope)
 
     def _slip(self, forward: float, backward: float) -> None:
-        """Cut the polyline where it exceeds the sums of the load point, and extend it to there."""
+        """Cut the polyline where it exceeds the sums of the load point, and extend it to that."""
         upper = self.top
         while upper > 0 and (
             self.rows[upper - 1, FORWARD] > forward or self.rows[upper - 1, BACKWARD] > backward
@@ -174,7 +174,7 @@ class PolylineStack:
             else:
                 self._put(0, -backward, backward, 0.0, 0.0)
         else:
-            # Lengths of the segment above the corner, of which the larger one decides.
+            # Two values of the length of the segment above the corner; the larger one decides.
             slope = self.rows[upper, SLOPE]
             by_forward = over_forward / (1 + slope) if over_forward > 0 and slope > -1 else 0.0
             by_backward = over_backward / (1 - slope) if over_backward > 0 and slope < 1 else 0.0

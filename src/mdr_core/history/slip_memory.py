@@ -9,15 +9,15 @@ form a polyline from the axis to the load point. Friction limits its slope to +-
 increase along the polyline and never exceed their values at the load point. From the vertices
 V_0 ... V_m a straight load step to P leaves
 
-    V_0 ... V_m, P       if no vertex exceeds P in either sum: all springs stick,
-    V_0 ... V_k, C, P    otherwise; V_k is the last vertex that does not, and the corner C the place
+    V_0 ... V_m, P if no vertex exceeds P in either sum: all springs stick, V_0 ... V_k, C, P
+    otherwise; V_k is the last vertex that does not, and the corner C the place
                          above it where the polyline exceeds P.
 
 `slip_kernel.PolylineStack` is this recurrence.
 
 A corner takes its sums from load points, so that errors do not accumulate. Normal coordinates are
-depths where displacements are prescribed, and reduced normal forces where tangential forces are.
-Source: notes, §10.
+depths where displacements are prescribed, and reduced normal forces where tangential forces are
+prescribed. Source: notes, §10.
 """
 
 from dataclasses import dataclass
@@ -51,9 +51,9 @@ class Polyline(NamedTuple):
     vertices: Array
     """Vertices, with the columns of `slip_layout`, shape (n, 4); none in separation."""
     normal: float
-    """Normal coordinate of the load point, exactly as it was given; <= 0 in separation."""
+    """Normal coordinate of the load point, an exact copy of the input; <= 0 in separation."""
     tangential: float
-    """Tangential coordinate of the load point, exactly as it was given."""
+    """Tangential coordinate of the load point, an exact copy of the input."""
 
     @property
     def in_contact(self) -> bool:
@@ -88,7 +88,7 @@ class VertexTree:
 
     @cached_property
     def span(self) -> Array:
-        """Length of the segment below each vertex in the normal coordinate, any on the axis."""
+        """Length of the segment below each vertex (normal coordinate); arbitrary on the axis."""
         return np.maximum(self.normal - self.normal[self.parent], 0.0)
 
     @property
@@ -133,7 +133,7 @@ def follow(start: Polyline, points: LoadPoints) -> tuple[VertexTree, Polyline]:
 
 
 def moved(line: Polyline, normal: float, tangential: float) -> tuple[Polyline, int]:
-    """Return the polyline after one straight step, and how many vertices it left unchanged."""
+    """Return the polyline after one straight step, and the number of unchanged vertices."""
     rows, stack = _stacked(line, 1)
     stack.move(normal, tangential, continues=False)
     return Polyline(_polyline_on(stack, rows), normal, tangential), stack.changed
@@ -175,7 +175,7 @@ def separated(normal: float, tangential: float) -> Polyline:
 
 
 def as_tree(line: Polyline, following: Polyline | None = None) -> VertexTree:
-    """Return one polyline as a tree without branches, and the step to the following one."""
+    """Return one polyline as a tree without branches, and the step to the next polyline."""
     count, path = len(line.vertices), np.array((following or line)[1:])[:, None]
     vertices, chain = line.vertices[:, NORMAL:].T, np.arange(-1, count, dtype=np.intp)
     return VertexTree(chain[:-1], vertices, chain[-1:], (count - 1, *line[1:]), path)
