@@ -118,7 +118,8 @@ def of_edge_slope(contact: NormalContact) -> Array:
     at = where(at > 0, at, np.nan)
     with np.errstate(all="ignore"):
         error = np.maximum(contact.edge_errors, ADJACENT)
-        # Where the contact coordinate is the radius, rounding does not move it onto a break.
+        # A prescribed radius that is the contact coordinate is exact: rounding does not move it
+        # onto a break.
         exact = (contact.control == "contact_radius") & (at == contact.contact_radius)
         sides = np.stack(np.broadcast_arrays((1 - error) * at, where(exact, at, (1 + error) * at)))
         slopes = profile.depth_slope(sides)

@@ -15,8 +15,8 @@ from mdr_core.typing import Array, Parameter
 # Types of single numbers and flags; NumPy's doubles are floats as well.
 _NUMBERS: Final = (float, int)
 _FLAGS: Final = (np.bool_, bool)
-# Number of values evaluated at once: the allocator maps every array above 128 kB (here of complex
-# numbers) anew.
+# Number of values evaluated at once. The memory of a larger array, above 128 kB in complex numbers,
+# is mapped at every allocation, which is slow.
 _AT_ONCE: Final = 8_192
 
 
@@ -100,6 +100,6 @@ def in_order(weights: Array, values: Array) -> Array:
 
 
 def in_blocks(count: int, values: int = 1) -> list[slice]:
-    """Return slices of `count` rows, given the values of a row, that bound the size of a block."""
+    """Divide `count` rows of `values` numbers each into slices of bounded size."""
     step = max(_AT_ONCE // values, 1)
     return [slice(start, start + step) for start in range(0, count, step)]

@@ -74,9 +74,7 @@ class NormalContact(validity.ContactResults):
 
     @cached_property
     def mean_pressure(self) -> Array:
-        """F_N / (pi a^2) [pressure]; at zero load its limit, infinite under tips sharper than a
-        cone.
-        """
+        """F_N / (pi a^2) [pressure]; at zero load its limit, infinite if sharper than a cone."""
         area = np.pi * (self.contact_radius * self.contact_radius)
         if extremes(area)[0] > 0:
             return self.normal_force / area
@@ -286,7 +284,7 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
     # Energies scale with coordinate^(2 n + 1), beside factors of the accepted magnitudes.
     reach = LARGEST ** (0.5 / (2 * profile.steepness + 1))
     if not 1 / reach < low <= high < reach:
-        # Only a load that is negative or not finite leads to another coordinate.
+        # A load that is negative or not finite always has a coordinate outside these bounds.
         require_not_negative(("load", name), load)
         contact = NormalContact(profile, e_star, coordinate)
         with np.errstate(all="ignore"):

@@ -52,12 +52,12 @@ def as_numbers(path: tuple[str | int, ...], values: float | ArrayLike) -> Array:
     else:
         masked = np.ma.getmaskarray(values) if isinstance(values, np.ma.MaskedArray) else None
         if masked is not None and masked.any():
-            # As an array it would hold the number beneath the mask.
+            # Conversion to an array would expose the number under the mask.
             detail = "is masked: leave it out, or give a number"
             raise InputError((*path, *first_index(masked)), detail)
         with suppress(TypeError, ValueError):
             array = np.asarray(values)
-            # NumPy would convert text as well.
+            # NumPy would convert text to numbers.
             numbers = array.astype(float, copy=False) if array.dtype.kind in "fiubO" else None
     if numbers is None:
         detail = f"must be a number or an array of numbers, not {type(values).__name__}"
@@ -144,8 +144,8 @@ def require_finite(path: tuple[str | int, ...], values: Array) -> None:
 def as_curve(places: str, **given: ArrayLike) -> tuple[Array, Array]:
     """Return the two named lists of a measured curve as arrays of equal length.
 
-    Raises InputError for numbers that are not finite, and for lists of different lengths, in which
-    `places` stands for the values of the first.
+    Raises InputError for numbers that are not finite, and for lists of different lengths; the
+    message calls the values of the first list `places`.
     """
     first, second = (np.atleast_1d(as_numbers((name,), given[name])) for name in given)
     for name, values in zip(given, (first, second), strict=True):
@@ -157,7 +157,7 @@ def as_curve(places: str, **given: ArrayLike) -> tuple[Array, Array]:
 
 
 def require_representable(path: tuple[str | int, ...], used: Flags, *results: Array) -> None:
-    """Raise InputError at the first load whose results leave the range of double precision.
+    """Raise InputError at the first load whose results are not representable as doubles.
 
     `path` is that of the load, `used` are the loads that are not zero, under which the results are
     positive.
@@ -202,7 +202,7 @@ def require_poissons_ratio(path: tuple[str | int, ...], value: float) -> None:
 
 
 def require_tolerance(rtol: float, tightest: float = TIGHTEST) -> None:
-    """Raise InputError unless the relative accuracy lies from the tightest one to 1e-3."""
+    """Raise InputError unless `rtol` is between the tightest accuracy and 1e-3."""
     if not tightest <= single(("rtol",), rtol) <= LOOSEST:
         raise InputError(("rtol",), f"must lie from {tightest} to {LOOSEST}")
 

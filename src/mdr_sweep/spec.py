@@ -21,15 +21,15 @@ QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
     "torsion": (*_NORMAL, *TorsionalContact.quantities),
     "wear": LimitingWear.quantities,
 }
-"""Quantities that a sweep computes unless some are named, by query."""
+"""Quantities that a sweep computes by default, by query."""
 ONLY_IF_NAMED: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": ("maximum_pressure", "model_error", "data_error", *PULL_OFF),
     "tangential": ("maximum_pressure", "maximum_shear_stress", "model_error", "data_error"),
     "torsion": ("maximum_pressure", "model_error", "data_error"),
     "wear": ("model_error",),
 }
-"""Quantities that are computed if they are named. Maxima of fields take a search and can be
-infinite; `data_error` is NaN without a table, and the pull-off NaN without adhesion."""
+"""Quantities that are computed only on request. Maxima of fields need a search and can be infinite;
+`data_error` is NaN without a table, and the pull-off is NaN without adhesion."""
 WARNING, ERROR = "warning", "error"
 TEXTS: Final = frozenset({"regime", WARNING, ERROR})
 """Columns of the result that are not numbers."""
@@ -66,7 +66,7 @@ class Spec:
     query : ``normal``, ``tangential`` or ``wear``.
     constants : fields of all cases, by their dotted names.
     quantities : quantities to compute, in the order of the result.
-    kept : columns of the input that are copied and not read.
+    kept : columns of the input that are copied but not interpreted.
     """
 
     query: str

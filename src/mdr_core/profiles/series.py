@@ -74,9 +74,7 @@ class Series(Profile):
 
     @cached_property
     def _powers(self) -> tuple[tuple[float, float], ...]:
-        """(coefficient, exponent) of each term, by ascending exponent; equal exponents are
-        merged.
-        """
+        """(coefficient, exponent) of each term, by exponent; equal exponents are merged."""
         merged: dict[float, float] = {}
         for term in self.terms:
             merged[term.exponent] = merged.get(term.exponent, 0.0) + term.coefficient

@@ -27,7 +27,7 @@ from mdr_service.schemas.fields import SHEAR_FIELDS, FieldQuery, LoadedQuery, St
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.settings import SETTINGS
 
-# Closed form wherever the equivalent profile is.
+# These fields have a closed form if the equivalent profile has one.
 _FOUNDATION: Final = frozenset({"foundation_load", "foundation_shear"})
 
 End = tuple[NormalContact, TangentialContact | ContactState | None]
@@ -45,7 +45,7 @@ def solve_stress(query: StressQuery) -> Contact:
 
 
 def require_loads(query: LoadedQuery) -> None:
-    """Raise InputError unless the query has loads, or a load history, that fit its friction."""
+    """Raise InputError unless the loads, or the load history, of a query suit its friction."""
     require_one_of(query, "load", "history")
     by_path = query.has("history")
     if by_path and query.has("tangential"):
@@ -100,7 +100,7 @@ def field(name: str, end: End, radius: Array) -> Array:
 
     Parameters
     ----------
-    name : function of `mdr_core.fields`, a quantity of a stress query.
+    name : quantity of a stress query, the name of a function of `mdr_core.fields`.
     end : result of `at_end`.
     radius : radii r >= 0 [length], shape (m,).
     """
@@ -130,7 +130,7 @@ def require_few_numbers(query: FieldQuery | SubsurfaceQuery, axis: str = "radius
 
 
 def require_radii(query: FieldQuery) -> None:
-    """Raise InputError unless radii are given once at most, and where fields need them."""
+    """Raise InputError if radii are given twice, or are missing although fields need them."""
     if query.radius and query.points:
         raise InputError(("points",), "at most one of radius, points is needed")
     if "quantities" in query.model_fields_set and not query.radii:
@@ -139,7 +139,7 @@ def require_radii(query: FieldQuery) -> None:
 
 
 def _require_consistent(query: StressQuery) -> None:
-    """Raise InputError where fields that are valid alone contradict each other."""
+    """Raise InputError if fields that are valid separately contradict each other."""
     require_loads(query)
     with_friction = query.has("tangential") or query.has("history")
     for index, name in enumerate(query.quantities):

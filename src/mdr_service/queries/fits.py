@@ -13,8 +13,8 @@ def solve_fit(query: FitQuery) -> Fit:
     """Fit F = E* F̂(d − d₀) + F₀ to a measured curve by least squares.
 
     The standard errors hold for independent errors of the forces of equal size. A warning `misfit`
-    tells that the residuals are not such noise: then the shape or the model is wrong.
-    `error_estimate` is the numerical error of the parameters.
+    means that the residuals are not such noise: the shape or the model is wrong. `error_estimate`
+    is the numerical error of the parameters.
     """
     if ("e_star" in query.fit) == query.has("material"):
         reason = "e_star is fitted: leave it out" if query.has("material") else "is needed"

@@ -113,7 +113,7 @@ class BodyMaterial(Strict):
     poissons_ratio: float = quantity("1", "Poisson's ratio ν", gt=-1, le=0.5)
 
 
-# As an enumeration, because a generator of clients takes no constant in a choice.
+# The schema is an enumeration, because client generators accept no constant in a choice.
 _Rigid = Annotated[Literal["rigid"], WithJsonSchema({"type": "string", "enum": ["rigid"]})]
 BodyOrRigid = Annotated[
     Annotated[_Rigid, Tag("<rigid>")] | Annotated[BodyMaterial, Tag("<body>")],
@@ -135,7 +135,7 @@ def thickness() -> Any:
 class Elastic(Strict):
     """Material of a contact."""
 
-    # Optional, but not null: hence a plain float with the default None.
+    # The field is optional, but not null; hence a plain float with the default None.
     yield_strength: float = positive(
         "pressure",
         "Yield strength Y of the softer body, in uniaxial tension; the response carries the "
@@ -231,11 +231,12 @@ class Axes(NamedTuple):
     y: tuple[str, ...]
     """Ordinates, each with a panel of its own."""
     curves: str = ""
-    """Member with a curve for each of its values."""
+    """Member of which each value has a curve of its own."""
     in_order: bool = False
     """True if the curve joins the entries in their own order."""
     is_measured: bool = False
-    """True if the first ordinate is fitted to measured values, and the second is what is left."""
+    """True if the first ordinate is fitted to measured values, and the second holds the
+    residuals."""
 
 
 class Query(Strict):
@@ -249,7 +250,7 @@ class Query(Strict):
 
     @property
     def controls(self) -> dict[str, Choice]:
-        """Given loads by the name of their field, unless they are a load path."""
+        """Given loads by the name of their field; empty for a load path."""
         fields = vars(self)
         return {name: fields[name] for name in _LOADS if fields.get(name)}
 
@@ -260,7 +261,7 @@ class Query(Strict):
 
     @property
     def path(self) -> Any:
-        """Load path (`schemas.load_paths.LoadPath`), None where there is none."""
+        """Load path (`schemas.load_paths.LoadPath`), None without one."""
         return None
 
     @property

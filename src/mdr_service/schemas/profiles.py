@@ -9,7 +9,7 @@ from mdr_service.schemas.quantities import Signed, Size, Strict, positive, quant
 from mdr_service.settings import SETTINGS
 
 _COEFFICIENT = "length^(1-exponent)"
-# A series of more powers is none that a body has; each costs a sum.
+# Maximum number of powers: shapes of bodies need fewer, and each power costs a sum.
 _MAX_TERMS = 100
 
 
@@ -30,8 +30,8 @@ class ConeProfile(Strict):
 class ParaboloidProfile(Strict):
     """A paraboloid, the shape of Hertz: r²/(2·radius).
 
-    Two spheres, or a sphere in a socket, are one with 1/radius = 1/R₁ + 1/R₂, where R < 0 for a
-    concave surface.
+    Two spheres, or a sphere in a socket, are one paraboloid with 1/radius = 1/R₁ + 1/R₂, where R <
+    0 for a concave surface.
     """
 
     kind: Literal["paraboloid"]
@@ -138,7 +138,7 @@ class CappedParaboloidProfile(Strict):
 
 
 class TabulatedProfile(Strict):
-    """A measured profile, the smoothest through or near its points; never extrapolated."""
+    """A measured profile: the smoothest one through or near its points; never extrapolated."""
 
     kind: Literal["tabulated"]
     r: list[Signed] = quantity(
@@ -200,4 +200,4 @@ OF_NUMBERS: Final = tuple(
     for kind, model in MODELS.items()
     if {field.annotation for name, field in model.model_fields.items() if name != "kind"} == {float}
 )
-"""Kinds that consist of numbers."""
+"""Kinds of profile whose fields are all numbers."""
