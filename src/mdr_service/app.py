@@ -20,8 +20,8 @@ from mdr_service.settings import SETTINGS
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     if supervisor := multiprocessing.parent_process():
-        # A terminal sends SIGINT to all processes. Workers ignore it, because the supervisor then
-        # ends them.
+        # A terminal that closes sends SIGHUP to all processes. Workers ignore it, because the
+        # supervisor ends them.
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
         threading.Thread(target=_end_after, args=(supervisor.join,), daemon=True).start()
     async with app.state.compute.started(health.self_test):

@@ -34,7 +34,7 @@ class ResponseParameters(BaseModel):
 
 _SIZE: Final = re.compile(r"(\d{2,3})x(\d{2,3})", re.ASCII)
 _SMALLEST, _LARGEST = 50, 400
-# These characters exist in every font, and none of them starts a formula in LaTeX.
+# These characters exist in every font, and none of them starts a formula in Matplotlib.
 _UNIT: Final = re.compile(r"[A-Za-z0-9µμ°²³·/*^. -]{1,12}")
 _THREE_NAMES: Final = (
     "must be three names, of length, force and pressure, such as mm,N,MPa: of at most 12 letters, "

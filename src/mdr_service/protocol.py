@@ -37,7 +37,7 @@ LINGER_SECONDS: Final = 1.0
 # Size of the send buffer of the kernel, which by default keeps megabytes of each response. The
 # kernel sends about as much per round trip: a megabyte per second to a client 100 ms away.
 _SEND_BUFFER_BYTES: Final = 131_072
-# Patterns after which a message of h11 quotes text of the client.
+# Part of a message of h11 that quotes text of the client.
 _SENT: Final = re.compile(r":? (?:bytearray|b['\"]).*", re.DOTALL)
 
 
