@@ -7,9 +7,11 @@ from importlib.metadata import version
 from typing import Any, Final
 
 from mdr_core import __version__
+from mdr_core.impact import Impact
 from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.tangential import TangentialContact
 from mdr_core.torsion import TorsionalContact
+from mdr_core.wear.evolution import WearEvolution
 from mdr_core.wear.limit import LimitingWear
 
 _NORMAL: Final = tuple(name for name in NORMAL_QUANTITIES if name != "maximum_pressure")
@@ -19,14 +21,17 @@ QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": _NORMAL,
     "tangential": (*_NORMAL, *TangentialContact.quantities),
     "torsion": (*_NORMAL, *TorsionalContact.quantities),
+    # Without the velocities and the numbers of cycles, which are columns of the input.
+    "impact": Impact.quantities[2:],
     "wear": LimitingWear.quantities,
+    "evolution": WearEvolution.quantities[1:],
 }
 """Quantities that a sweep computes by default, by query."""
 ONLY_IF_NAMED: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": ("maximum_pressure", "model_error", "data_error", *PULL_OFF),
     "tangential": ("maximum_pressure", "maximum_shear_stress", "model_error", "data_error"),
     "torsion": ("maximum_pressure", "model_error", "data_error"),
-    "wear": ("model_error",),
+    **dict.fromkeys(("impact", "wear", "evolution"), ("model_error",)),
 }
 """Quantities that are computed only on request. Maxima of fields need a search and can be infinite;
 `data_error` is NaN without a table, and the pull-off is NaN without adhesion."""
@@ -63,7 +68,7 @@ class Spec:
 
     Parameters
     ----------
-    query : ``normal``, ``tangential`` or ``wear``.
+    query : name of the query, of `QUANTITIES`.
     constants : fields of all cases, by their dotted names.
     quantities : quantities to compute, in the order of the result.
     kept : columns of the input that are copied but not interpreted.

@@ -183,8 +183,11 @@ def _solve_alone(spec: Spec, given: Mapping[str, Any]) -> dict[str, Any]:
             request = _validated(spec, given)
             source = query.solve(request)
             result = query.result(request, source)
+            # The last: of several numbers of cycles only the end of wear has a place in the row.
             values = {
-                name: result[name][0] if name in result else np.ravel(getattr(source, name, nan))[0]
+                name: result[name][-1]
+                if name in result
+                else np.ravel(getattr(source, name, nan))[-1]
                 for name in spec.quantities
             }
         codes = dict.fromkeys(warning["code"] for warning in result["warnings"])

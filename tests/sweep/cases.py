@@ -8,6 +8,7 @@ from typing import Any
 
 import pyarrow as pa
 
+from mdr_service.queries import QUERIES
 from mdr_service.schemas.flat import nested
 from mdr_sweep import vectorized
 from mdr_sweep.spec import QUANTITIES, Spec
@@ -108,7 +109,7 @@ def swept(query: str, rows: Sequence[Mapping[str, Any]]) -> list[Row]:
 def served(client: Client, query: str, row: Mapping[str, Any]) -> Row:
     """Return the response of the service to one row, as a row of a result."""
     body = json.dumps(nested({name: value for name, value in row.items() if value is not None}))
-    response = client.post_text(f"/v1/{query}", body.encode())
+    response = client.post_text(QUERIES[query].path, body.encode())
     document = response.json()
     nothing: Row = dict.fromkeys(QUANTITIES[query])
     if response.status_code != 200:
@@ -117,6 +118,6 @@ def served(client: Client, query: str, row: Mapping[str, Any]) -> Row:
     codes = " ".join(dict.fromkeys(each["code"] for each in document["warnings"]))
     # What the service writes as null is infinite.
     answers = {
-        name: math.inf if document[name][0] is None else document[name][0] for name in nothing
+        name: math.inf if document[name][-1] is None else document[name][-1] for name in nothing
     }
     return answers | {"warning": codes or None, "error": None}

@@ -46,6 +46,46 @@ def test_warnings_are_per_case_near_full_slip(client: Client) -> None:
     assert 0 < sum(each["warning"] is not None for each in computed) < 10
 
 
+BALL: Row = {
+    "profile.kind": "paraboloid",
+    "profile.radius": 0.01,
+    "friction_coefficient": 0.3,
+    "material.e_star": 1e11,
+    "material.g_star": 8e10,
+    "material.shear_modulus": 4e10,
+}
+
+
+@pytest.mark.parametrize(
+    ("query", "shared", "swept_field", "values"),
+    [
+        ("torsion", {"load.normal_force": 10.0}, "torsion.torque", [0.0, 1e-5, -9e-5, 1.0]),
+        (
+            "impact",
+            {"normal_mass": 1.0, "tangential_mass": 0.3, "normal_velocity": 1.0},
+            "tangential_velocity",
+            [0.0, 0.3, -2.0],
+        ),
+        (
+            "evolution",
+            {
+                "load.normal_force": 10.0,
+                "oscillation.tangential_force": 1.5,
+                "wear_coefficient": 1e-12,
+                "resolution": 8,
+            },
+            "cycles",
+            [[0.0], [1e3, 1e4], [1e9]],
+        ),
+    ],
+)
+def test_rows_of_other_queries_equal_the_responses(
+    client: Client, query: str, shared: Row, swept_field: str, values: list[Any]
+) -> None:
+    rows = [BALL | shared | {swept_field: value} for value in values]
+    assert swept(query, rows) == [served(client, query, row) for row in rows]
+
+
 def test_adhesive_rows_equal_the_responses(client: Client) -> None:
     """Some rows have a work of adhesion, one of them a load below the pull-off."""
     row: Row = {"profile.kind": "paraboloid", "profile.radius": 1e-3, "material.e_star": 1e6}
