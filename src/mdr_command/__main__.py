@@ -90,7 +90,7 @@ def main(given: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return ExitStatus.INTERRUPTED
     except OSError as error:
-        # Python would try once more to write the rest on exit, and print a traceback.
+        # On exit Python would write the rest once more, fail, and print a traceback.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if isinstance(error, BrokenPipeError):
             return ExitStatus.PIPE_CLOSED

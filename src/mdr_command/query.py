@@ -36,7 +36,7 @@ _STATUS: Final = {
 _STANDARD_INPUT: Final = "-"
 # Options that are not numbers.
 _TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities"})
-# Options beside the parameters of the request.
+# Options in addition to the parameters of the request.
 _OTHER_OPTIONS: Final = frozenset(
     {"output", "size", "units", "table", "area_coefficients", "largest_height", "length_unit"}
 )

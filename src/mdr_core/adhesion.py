@@ -45,7 +45,7 @@ _DISTANCES: Final = np.logspace(-75, 75, 1801)
 _IN_PIECE: Final = 9
 # Delta_l of a paraboloid at pull-off over the range of adhesion, for Tabor's number 1.
 _TABOR: Final = sqrt(2 * pi) * (9 * pi / 8) ** (1 / 6)
-# Tabor's number from which JKR holds. Source: johnson-greenwood.
+# Tabor's number above which JKR theory is valid. Source: johnson-greenwood.
 _JKR: Final = 5.0
 
 
@@ -121,7 +121,9 @@ class Curve:
         return np.append(first, ends[~stable[at]]), np.append(ends[stable[at]], nodes[-1])
 
     def outermost(self, name: str, load: Array) -> tuple[Array, int]:
-        """Return the outermost stable coordinate of each load (n,), and the most states of one."""
+        """Return the outermost stable coordinate of each load (n,), and the most states per
+        load.
+        """
         low, high = self.stable[name]
         least = self.load(name, low)
         holds = load[:, None] >= least - ROUNDING * np.abs(least)
@@ -281,7 +283,7 @@ class AdhesiveContact(NormalContact):
         return (*super().warnings_without_bodies, *found)
 
     def superposed(self, field: Callable[[NormalContact], Any]) -> Array:
-        """Return a field of the reference, by load, less that of the retracted flat punch."""
+        """Return the difference of a field, by load, between reference and retracted flat punch."""
         whole = np.asarray(field(self.reference))
         ends = zip(*map(np.ravel, (self.contact_radius, self.retraction)), strict=True)
         punches = (NormalContact(FlatPunch(a), self.e_star, step) for a, step in ends)
@@ -314,13 +316,13 @@ def solve(
     work_of_adhesion : w, energy per area [force/length], > 0.
     indentation_depth, normal_force, contact_radius : exactly one [length], [force], [length]; a
         number or an array. The first two may be negative down to the pull-off; the contact radius
-        is one that is stable under a prescribed depth.
+        must be stable under a prescribed depth.
     range_of_adhesion : distance over which surfaces attract [length], for the warning `jkr_range`.
 
     Raises
     ------
     InputError : a load below the pull-off, which the message contains; a contact that adhesion
-        spreads beyond the profile; or what `normal.solve` rejects.
+        spreads beyond the profile; or input that `normal.solve` rejects.
 
     Examples
     --------
@@ -356,7 +358,7 @@ def solve(
 
 
 def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, Array, int]:
-    """Coordinate and retraction under each load, and the largest number of states under one."""
+    """Coordinate and retraction under each load, and the largest number of stable states."""
     profile, states = curve.profile, 1
     if name == "contact_radius":
         validation.require_positive(("load", name), load)

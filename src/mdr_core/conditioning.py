@@ -32,9 +32,9 @@ def near_full_slip(
 ) -> Array:
     """Return the largest condition number of each load's results near full slip [1].
 
-    The distance from full slip is F_N(c) under a force and d(c) under a displacement. The condition
-    number of c is that of the distance divided by its logarithmic derivative over c; all other
-    results follow from c.
+    The distance from full slip is F_N(c) under a force and d(c) under a displacement. Divided by
+    the logarithmic derivative of the distance with respect to c, its condition number is the
+    condition number of c. All other results follow from c.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def near_full_slip(
     ratio : load divided by the load at full slip [1].
     partial : True in partial slip.
     force_prescribed : True if the tangential force is prescribed, False for the displacement.
-    edges : True to include c and a - c beside forces, displacements and energies.
+    edges : True to include c and a - c in addition to forces, displacements and energies.
     """
     late = partial & (ratio > 1 - NARROW)
     if not some(late):

@@ -1,4 +1,4 @@
-"""Double precision: its spacing, and the range in which it has all its digits."""
+"""Double precision: spacing of numbers, and range of full accuracy."""
 
 from typing import Final
 
@@ -7,9 +7,9 @@ import numpy as np
 EPS: Final = float(np.finfo(float).eps)
 """Distance from 1 to the next double."""
 TINY: Final = float(np.finfo(float).tiny)
-"""Smallest number with all its digits."""
+"""Smallest normal number; smaller ones have fewer digits."""
 ADJACENT: Final = 4 * EPS
-"""Relative distance within which two numbers are the same but for a few roundings."""
+"""Relative distance within which two numbers differ by a few rounding errors at most."""
 ROUNDING: Final = 16 * EPS
 """Bound, with a margin, on the relative rounding error of a short sum of products and of its square
 root."""

@@ -55,14 +55,14 @@ def where(condition: Any, this: Any, other: Any) -> Any:
 def piecewise(
     place: Any, start: Any, below: Callable[[Any], Any], beyond: Callable[[Any], Any]
 ) -> Any:
-    """Return below(place) up to `start` and beyond(place) from there on.
+    """Return below(place) up to `start` and beyond(place) beyond it.
 
     Each formula sees only places on its own side.
 
     Parameters
     ----------
     place : numbers or arrays at which the formulas are evaluated.
-    start : place from which on `beyond` holds.
+    start : place beyond which `beyond` applies.
     below, beyond : formulas, each of a place.
     """
     if is_number(place) and is_number(start):

@@ -43,9 +43,9 @@ def largest_stress(
 ) -> Array:
     """Return the largest (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx of each contact [1].
 
-    It is p/E* for c = 0 and |tau|/(mu E*) otherwise. Infinite where [c, a] holds a sharp tip, a
-    slope discontinuity or the edge of a flat punch; zero without a load. Under a paraboloid it is
-    (2/(pi R)) sqrt(a^2 - c^2), at r = c.
+    It is p/E* for c = 0 and |tau|/(mu E*) otherwise. The stress is infinite if [c, a] contains a
+    sharp tip, a slope discontinuity or the edge of a flat punch, and zero without a load. Under a
+    paraboloid it is (2/(pi R)) sqrt(a^2 - c^2), at r = c.
 
     Source: mdr-5, Eqs. (5.38), (5.68), (5.70).
 

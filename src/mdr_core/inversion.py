@@ -73,12 +73,12 @@ def invert(
             known = (slope > 0) & (slope < inf)
             step, longest = residual / slope, _LAST_BUT_ONE
             if not every(known):
-                # Where the slope is not finite, the residual gives the direction alone, and
-                # converges linearly.
+                # Where the slope is not finite, the residual gives only the direction, and
+                # convergence is linear.
                 step = where(known, step, residual)
                 longest = where(known, _LAST_BUT_ONE, ROUNDING)
             size = abs(step)
-            # A short step alone may only mean that the function is steep here.
+            # A short step may merely mean that the function is steep here.
             short = (abs(residual) <= _LAST_BUT_ONE) & (size <= longest)
             converged = short & known & (size <= ROUNDING)
             proposed = s * np.exp(step)
@@ -93,7 +93,8 @@ def invert(
             ) | last
             moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))
             moved = where(moved < LARGEST, where(moved > 1 / LARGEST, moved, 0.0), inf)
-            # A converged root stays: it does not depend on how long the others take.
+            # A converged root does not change any more, so that it does not depend on the other
+            # roots.
             s = where(done, s, moved)
             done = done | settling | converged
             if every(done):

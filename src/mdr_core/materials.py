@@ -61,7 +61,7 @@ _Number = TypeVar("_Number", bound=Parameter)
 def normal_modulus(e_star: _Number | Material) -> _Number | float:
     """Return E* [pressure] of a material, or the number itself; raise InputError otherwise.
 
-    Its value is not checked.
+    The value is not checked.
     """
     value = e_star.e_star if isinstance(e_star, Material) else e_star
     _require_both_bodies("e_star", value)
@@ -71,7 +71,7 @@ def normal_modulus(e_star: _Number | Material) -> _Number | float:
 def shear_modulus(g_star: _Number | Material | None) -> _Number | float:
     """Return G* [pressure] of a material, or the number itself; raise InputError otherwise.
 
-    Its value is not checked.
+    The value is not checked.
     """
     value = g_star.g_star if isinstance(g_star, Material) else g_star
     _require_both_bodies("g_star", value)
@@ -83,7 +83,7 @@ def shear_modulus(g_star: _Number | Material | None) -> _Number | float:
 def twist_modulus(shear_modulus: _Number | Material | None) -> _Number | float:
     """Return the shear modulus G of a twist [pressure], from a material or the number itself.
 
-    Its value is not checked. Raises InputError if there is none: G* does not determine it.
+    The value is not checked. Raises InputError if there is none: G* does not determine it.
     """
     value = shear_modulus.shear_modulus if isinstance(shear_modulus, Material) else shear_modulus
     _require_both_bodies("shear_modulus", value)

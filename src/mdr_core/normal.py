@@ -74,7 +74,7 @@ class NormalContact(validity.ContactResults):
 
     @cached_property
     def mean_pressure(self) -> Array:
-        """F_N / (pi a^2) [pressure]; at zero load its limit, infinite if sharper than a cone."""
+        """F_N / (pi a^2) [pressure]; at zero load its limit, which may be infinite."""
         area = np.pi * (self.contact_radius * self.contact_radius)
         if extremes(area)[0] > 0:
             return self.normal_force / area
@@ -85,7 +85,7 @@ class NormalContact(validity.ContactResults):
     def maximum_pressure(self) -> Array:
         """Largest pressure p(r) [pressure], zero without a load.
 
-        Infinite at a sharp tip, at a slope discontinuity and at the edge of a flat punch.
+        It is infinite at a sharp tip, at a slope discontinuity and at the edge of a flat punch.
         """
         profile, edge, loaded = self.profile, self.coordinate, self.loaded
         falls = profile.falls_from_axis(edge)
@@ -188,7 +188,7 @@ class NormalContact(validity.ContactResults):
 
     @property
     def findings(self) -> list[validity.Finding]:
-        """Findings that depend on profile and loads alone."""
+        """Findings that depend only on the profile and the loads."""
         sharp = "mean_pressure is infinite at zero load: the tip is sharper than a cone"
         found = [
             validity.Finding("singular", np.isinf(self.mean_pressure), lambda: sharp),
@@ -281,7 +281,8 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
             amount = load / e_star if of_force else load
             coordinate = profile.coordinate_from_load(amount, of_force=of_force)
     low, high = extremes(coordinate)
-    # Energies scale with coordinate^(2 n + 1), beside factors of the accepted magnitudes.
+    # Energies scale with coordinate^(2 n + 1); the other factors are bounded by the accepted
+    # magnitudes.
     reach = LARGEST ** (0.5 / (2 * profile.steepness + 1))
     if not 1 / reach < low <= high < reach:
         # A load that is negative or not finite always has a coordinate outside these bounds.

@@ -1,6 +1,6 @@
 """Gauss-Legendre rules for integrands that are analytic in a strip about the real axis.
 
-The substitutions of `mdr_core.abel` turn every singular stress integral into one whose
+The substitutions of `mdr_core.abel` remove the singularities of every stress integral: the new
 integrand h(y) is analytic for |Im y| < pi/2 and grows no faster than exp(growth |Re y|). Pieces of
 length two then converge as 3.3^-2n.
 """

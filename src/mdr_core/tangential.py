@@ -104,7 +104,7 @@ class TangentialContact(validity.ContactResults):
         """Step of depth or force over the annulus, times mu E*/divisor."""
         ends = self._coordinate, self.width, self.stick_coordinate
         rise = step(self.normal.profile, *ends)
-        # mu and G* are often single numbers beside an array E*.
+        # mu and G* are often single numbers while E* is an array.
         return self.friction_coefficient / divisor * self.normal.e_star * rise
 
     def _signed(self, size: Array) -> Array:

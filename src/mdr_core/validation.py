@@ -84,7 +84,7 @@ def first_index(bad: Flags) -> tuple[int, ...]:
 def only_one(
     path: tuple[str | int, ...], given: Mapping[str, ArrayLike | None]
 ) -> tuple[str, Array]:
-    """Return name and values of the one quantity that is given.
+    """Return the name and the values of the only quantity that is given.
 
     Raises InputError at the path for none or several of them, or without values.
     """
@@ -144,8 +144,8 @@ def require_finite(path: tuple[str | int, ...], values: Array) -> None:
 def as_curve(places: str, **given: ArrayLike) -> tuple[Array, Array]:
     """Return the two named lists of a measured curve as arrays of equal length.
 
-    Raises InputError for numbers that are not finite, and for lists of different lengths; the
-    message calls the values of the first list `places`.
+    Raises InputError for numbers that are not finite, and for lists of different lengths; `places`
+    is the word for the first list in the message.
     """
     first, second = (np.atleast_1d(as_numbers((name,), given[name])) for name in given)
     for name, values in zip(given, (first, second), strict=True):

@@ -85,7 +85,7 @@ class Transfers:
 
 
 class ServiceMiddleware:
-    """Outermost layer of the application, but for CORS.
+    """Outermost layer of the application, except for CORS.
 
     An exception that reaches the server closes the connection, so that a client that reuses it
     loses the next request. This layer therefore handles every exception.

@@ -96,7 +96,7 @@ class Parameters(ResponseParameters):
 
         Parameters
         ----------
-        profile : profile in place of the one that parameters give.
+        profile : profile that replaces the profile given by parameters.
         """
         given = self.model_dump(exclude_unset=True, exclude=set(Parameters.model_fields))
         self._join_range(given)

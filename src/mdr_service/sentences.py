@@ -1,4 +1,4 @@
-"""Errors of pydantic in the sentences of the core: what is wrong, and what to do.
+"""Errors of pydantic in the style of the core: the fault, and its remedy.
 
 Pydantic's own sentences repeat the value sent, name the tags of its unions and the types of
 Python, and print the bound 1e50 with all its zeros.

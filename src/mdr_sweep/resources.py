@@ -26,7 +26,8 @@ class Estimate(NamedTuple):
     chunk: int
     """Cases in a chunk."""
     processes: int
-    """Number of processes; 1 means this process, if starting others takes longer than they save."""
+    """Number of processes; 1 means this process, if further processes cost more time than they
+    save."""
     seconds: float
     """Time on an idle machine, including the start of the workers and the writing of the result."""
     disk: float

@@ -16,7 +16,7 @@ from mdr_core.wear.limit import LimitingWear
 
 _NORMAL: Final = tuple(name for name in NORMAL_QUANTITIES if name != "maximum_pressure")
 PULL_OFF: Final = ("pull_off_force", "pull_off_depth", "retraction")
-"""Quantities of adhesive contacts alone."""
+"""Quantities that only adhesive contacts have."""
 QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": _NORMAL,
     "tangential": (*_NORMAL, *TangentialContact.quantities),
@@ -48,10 +48,10 @@ class SweepStatus(IntEnum):
     DONE = 0
     ENDED_EARLY = 1
     INVALID_INPUT = 2
-    """As argparse reports invalid arguments."""
+    """The status with which argparse reports invalid arguments."""
     ALL_FAILED = 3
     INTERRUPTED = 130
-    """As shells report programs terminated by SIGINT."""
+    """The status with which shells report programs terminated by SIGINT."""
 
 
 class SweepError(Exception):

@@ -152,7 +152,7 @@ def write(
     ----------
     sink : path or binary file.
     suffix : ``.parquet`` or ``.csv``.
-    batches : the rows, in one batch or more.
+    batches : the rows, in at least one batch.
     provenance : stored in JSON as the metadata `mdr` of a Parquet file.
     """
     rows = regrouped(batches, ROW_GROUP)

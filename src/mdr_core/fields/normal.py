@@ -25,7 +25,7 @@ from mdr_core.validation import (
 )
 
 Contact = NormalContact | TangentialContact
-"""A contact, whose tangential load does not change the fields of the normal one."""
+"""A contact with or without tangential load, which does not affect the normal fields."""
 # Values of a field under the load of this index, at some radii.
 Field = Callable[[int, Array], Array]
 

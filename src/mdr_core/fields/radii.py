@@ -115,7 +115,7 @@ def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) ->
 
 
 def rim_error(edges: Edges, distance: Array) -> float:
-    """Return the relative error at (m, k) distances from edges of a stress with a root there [1].
+    """Return the relative error of a stress near edges (m, k), where it has a root [1].
 
     Points within four units in the last place of an edge are excluded.
     """
@@ -210,7 +210,7 @@ def graded(stops: Array, points: int) -> Array:
     if points < stops.size:
         raise InputError(("points",), f"at least {stops.size} are needed for the singular radii")
     gaps = np.diff(stops)
-    # Every gap gets one point, and a share of the rest in proportion to the root of its length.
+    # Every gap gets one point, and the other points in proportion to the root of its length.
     spare = points - stops.size
     share = np.sqrt(gaps) / np.sqrt(gaps).sum() * spare
     counts = np.floor(share).astype(int)

@@ -114,7 +114,7 @@ class ContactState(Results):
         """Edge of the vertex at a depth, `span` above another one."""
         profile = self.profile
         if profile.largest_loads is not None:
-            # By rounding a corner may be deeper than the load point.
+            # A rounding error may place a corner deeper than the load point.
             depth = min(depth, profile.largest_loads[0])
         coordinate = profile.coordinate_from_depth(depth)
         force = profile.reduced_force(coordinate)

@@ -47,7 +47,7 @@ class SavedState(NamedTuple):
     polyline: Sequence[Sequence[float]]
     """Sums normal + anchor and normal - anchor of the vertices below the load point, from the axis.
 
-    None in separation.
+    The sums are empty in separation.
     """
 
     @classmethod
@@ -76,7 +76,7 @@ class SavedState(NamedTuple):
             return slip_memory.separated(normal, tangential)
         line = slip_memory.through(np.array(self.polyline), normal, tangential)
         growth = np.diff(line.vertices[:, :NORMAL], axis=0)
-        # By rounding a sum may decrease along a polyline.
+        # Rounding errors may let a sum decrease along a polyline.
         good = (growth.min(axis=1) >= -ROUNDING * normal) & (growth.max(axis=1) > 0)
         good[0] &= line.vertices[0, NORMAL] == 0
         if not good.all():
@@ -181,7 +181,8 @@ class SampledPath:
             loads = loads / self.start.e_star
         if not self.mixed:
             return loads
-        # Equal loads get equal coordinates: the last bit may depend on an element's position.
+        # Equal loads get equal coordinates; otherwise the last bit may depend on an element's
+        # position.
         load, index = np.unique(np.maximum(loads, 0.0), return_inverse=True)
         of_force = not self.depth_prescribed
         s = self.start.profile.coordinate_from_load(load, of_force=of_force)

@@ -1,6 +1,6 @@
 """Sequential loops of load histories: the polyline after each step, and the path of the slip front.
 
-Every load point depends on the one before, so there is nothing for NumPy to vectorise. Cython
+Every load point depends on the previous one, so that NumPy cannot vectorise the loop. Cython
 compiles this file as it stands, with the C types of `slip_kernel.pxd`; uncompiled it returns
 bit-identical results, about a hundred times slower. One file holds all functions, since Cython
 inlines within a module only.
@@ -26,8 +26,8 @@ class PolylineStack:
         V_0 ... V_k, C, P'   otherwise; k is the last vertex with f_k <= f' and b_k <= b'.
 
     The corner C is the place between V_k and V_k+1 at which the second of the two sums falls to
-    its value at P'. The other sum of C is its value on the segment; between C and P' it grows
-    alone. If the vertex on the axis exceeds P' as well, all springs slip, and C lies on the axis.
+    its value at P'. The other sum of C has its value on the segment; between C and P' only this sum
+    grows. If the vertex on the axis exceeds P' as well, all springs slip, and C lies on the axis.
 
     Parameters
     ----------
@@ -43,7 +43,8 @@ class PolylineStack:
         self.y = y
         # Lowest place that the last step has changed.
         self.changed = top + 1
-        # The last step was straight and without slip, so that another one may continue it.
+        # True if the last step was straight and without slip, so that the next step may continue
+        # it.
         self.straight = False
 
     def run(
@@ -111,8 +112,8 @@ class PolylineStack:
         Parameters
         ----------
         x, y : normal and tangential coordinate after the step; x <= 0 in separation.
-        continues : true if the step continues the straight line of the one before: without slip it
-            extends the last segment.
+        continues : true if the step continues the straight line of the previous step; without slip
+            it extends the last segment.
         """
         x0 = self.x
         y0 = self.y

@@ -163,7 +163,7 @@ class LoadHistory(validity.ContactResults):
         )._asdict()
 
     def _over_depths(self, span: Array, line: Polyline) -> Polyline:
-        """Convert a polyline over reduced forces to one over depths, with equal slopes."""
+        """Return the polyline over depths with the slopes of a polyline over reduced forces."""
         if not line.in_contact:
             return slip_memory.separated(min(float(self.indentation_depth[-1]), 0.0), 0.0)
         return slip_memory.stacked(span, slip_memory.as_tree(line).slope[1:])

@@ -42,7 +42,7 @@ NORMAL_QUANTITIES: Final = (
 )
 # Fields of a contact, as `Profile.closed_forms` names them.
 FIELDS: Final = ("pressure", "shear_stress", "slip", "normal_displacement")
-# Attributes that completion offers, beside the parameters and the attributes of a table.
+# Attributes that completion offers, in addition to the parameters and the attributes of a table.
 _SHAPE: Final = ("f", "df", "g", "dg", "r", "breaks", "domain", "infinite_pressure_radii")
 _FOR_USERS: Final = ("kind", "formula", "closed_forms", "notices", *_SHAPE)
 _NO_BREAKS: Final = np.empty(0)
@@ -62,7 +62,7 @@ class Profile(ABC):
 
     kind: ClassVar[str]
     formula: ClassVar[str]
-    # Quantities in closed form; the others need quadrature or iteration.
+    # Quantities in closed form; all others need quadrature or iteration.
     closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
     # Closed forms of the stick edge in contact coordinates, by u_x/u_max and by F_x/(mu F_N).
     stick_ratios: ClassVar[StickRatios | None] = None

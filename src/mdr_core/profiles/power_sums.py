@@ -54,8 +54,8 @@ def _scaled_sum(terms: LogTerms, u: float) -> float:
 def _log_roots(terms: LogTerms) -> list[float]:
     """All zeros u at which the sum changes sign, ascending.
 
-    Divided by its lowest power and differentiated, the sum loses one term. By Rolle's theorem it
-    is monotone between the roots of that derivative, so each interval holds at most one root.
+    Division by its lowest power and differentiation remove one term of the sum. By Rolle's theorem
+    it is monotone between the roots of that derivative, so each interval holds at most one root.
     """
     if len(terms) == 1:
         return []

@@ -328,7 +328,7 @@ def _reject(name: str, given: Array, bad: Flags, detail: str) -> None:
 def _condition(name: str, states: Array, slides: Flags) -> Array:
     """Bound on the relative condition number of the results with respect to the load.
 
-    The load determines P, and thereby c, a - c, the other load and the work.
+    The load determines P, and P determines c, a - c, the other load and the work.
     """
     c, width, rotation, moment, _, slope = states
     if name == "stick_radius":

@@ -22,7 +22,7 @@ from mdr_service.serializers.picture import AS_USUAL, Appearance
 
 MAX_PARSED_ON_LOOP: Final = 16_384
 """Longest query that is parsed on the event loop [bytes]; the slowest one is rejected in 2 ms."""
-# A response depends on the query and on the version of the service alone.
+# A response depends only on the query and on the version of the service.
 _CACHED: Final = {"Cache-Control": "max-age=3600", "Vary": "Accept"}
 
 

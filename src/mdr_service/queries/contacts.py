@@ -1,4 +1,4 @@
-"""Queries about contacts, and what all queries share.
+"""Queries about contacts, and functions that all queries share.
 
 Profile, material and load become arguments of the core. Results of the core, checked for overflow,
 become the members of a response, together with their warnings.

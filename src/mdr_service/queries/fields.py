@@ -110,7 +110,7 @@ def field(name: str, end: End, radius: Array) -> Array:
 
 
 def at_end(source: Contact) -> End:
-    """Return the normal contact of the fields, and what friction adds to it."""
+    """Return the normal contact of the fields, and the tangential contact or state, if any."""
     if isinstance(source, TangentialContact):
         return source.normal, source
     if isinstance(source, NormalContact):
@@ -122,7 +122,7 @@ def at_end(source: Contact) -> End:
 
 
 def require_few_numbers(query: FieldQuery | SubsurfaceQuery, axis: str = "radius") -> None:
-    """Raise InputError if the response would hold too many numbers along its axis."""
+    """Raise InputError if the response would contain too many numbers along its axis."""
     most = SETTINGS.max_numbers
     if query.numbers > most:
         detail = f"the response would hold {query.numbers} numbers, and must not exceed {most}"

@@ -18,7 +18,7 @@ from mdr_service.schemas.quantities import (
 
 
 def _describe_choice(schema: dict[str, Any]) -> None:
-    """Describe the controls as objects of which one is given, each complete with its fields."""
+    """Describe the controls as alternative objects, each with all its fields."""
     fields = schema.pop("properties")
     optional = {name: field for name, field in fields.items() if field.get("default") is not None}
     schema["oneOf"] = [
@@ -70,7 +70,7 @@ class Choice(Strict, json_schema_extra=_describe_choice):
 class Load(Choice):
     """Normal load: exactly one control, a number or a list."""
 
-    # An absent control is None; a given one is never null.
+    # An absent control is None; null is not valid input.
     indentation_depth: SignedScalarOrArray = quantity(
         "length", "Indentation depth d, with adhesion down to the pull-off", default=None
     )

@@ -14,7 +14,7 @@ Schema = Mapping[str, Any]
 def leaves(
     root: Schema, node: Schema | None = None, name: str = ""
 ) -> Iterator[tuple[str, Schema]]:
-    """Yield the dotted name and schema of each number, string or array of them in a request.
+    """Yield the dotted name and schema of each number, string, or array of numbers or strings.
 
     `root` is the JSON schema of the request, and `node` the part to walk, with its name.
     """
