@@ -54,8 +54,8 @@ def invert(
 
     Returns
     -------
-    Array of the common shape; zero or infinite where the root leaves double precision, and NaN
-    where the function does.
+    Array of the common shape. It is zero or infinite where the root is not representable, and NaN
+    where a value of the function is not.
 
     Raises
     ------

@@ -168,7 +168,7 @@ def grid(contact: Contact | ContactState, points: int) -> Array:
 
     Raises
     ------
-    InputError : fewer points than such radii.
+    InputError : fewer points than edges and breaks.
     """
     known = edges(contact)
     profile = (contact if isinstance(contact, ContactState) else contact.normal).profile

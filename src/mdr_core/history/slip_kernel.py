@@ -63,8 +63,8 @@ class PolylineStack:
         path : normal and tangential coordinate of the load points, shape (2, n).
         continues : see `move`, shape (n,).
         number : index of each vertex on the stack.
-        parent, vertices : parents, normal coordinates and slopes of the vertices on the stack;
-            receive the parent of every new vertex, -1 on the axis, and its coordinate and slope.
+        parent, vertices : parent (-1 on the axis), and normal coordinate and slope, of each vertex
+            on the stack. The loop adds the values of every new vertex.
         tops : receives the vertex of each load point, -1 in separation.
         """
         made = self.top + 1
