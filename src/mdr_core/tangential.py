@@ -259,7 +259,7 @@ class TangentialContact(validity.ContactResults):
 
     @property
     def _load_condition(self) -> Parameter:
-        """Largest relative condition number of each load's results with respect to it [1]."""
+        """Largest relative condition number of the results with respect to each load [1]."""
         force_prescribed, (size, limit) = self.control == "tangential_force", self._load_and_limit
         profile, partial = self.normal.profile, (limit > 0) & ~self.full_slip
         ratio = where(partial, size / where(limit > 0, limit, 1.0), 0.0)

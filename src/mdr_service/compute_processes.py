@@ -96,7 +96,7 @@ class ComputeProcess:
                 self._calls.writelines((_HEAD.pack(len(message)), message))
                 await self._calls.drain()
                 (length,) = _HEAD.unpack(await self._outcomes.readexactly(_HEAD.size))
-                # The pipe's other end is the server's own code.
+                # Unpickling is safe: the other end of the pipe is the server's own code.
                 return pickle.loads(await self._outcomes.readexactly(length))  # noqa: S301
         except BaseException:
             self.kill()
@@ -321,7 +321,7 @@ def serve() -> None:
 def _attempt(text: bytes) -> Any:
     """Return the result of a call, or an exception that can be pickled."""
     try:
-        # The pipe's other end is the server's own code.
+        # Unpickling is safe: the other end of the pipe is the server's own code.
         function, arguments = pickle.loads(text)  # noqa: S301
         return function(*arguments)
     except problems.FAILURES as error:

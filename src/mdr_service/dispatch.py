@@ -24,8 +24,8 @@ from mdr_service.settings import SETTINGS
 
 _logger: Final = logging.getLogger(__name__)
 # Maximum number of values in the response to a query that runs on the event loop; each load has
-# about ten, and for a series the number is multiplied by its terms. Fields at a thousand radii
-# reach the limit, and take a millisecond or two.
+# about ten, and for a series the number is multiplied by its terms. Fields at a thousand radii just
+# meet the limit, and take a millisecond or two.
 _MAX_NUMBERS_ON_LOOP, _PER_LOAD = 1_100, 10
 
 

@@ -40,7 +40,7 @@ def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
 
 
 def power_slope(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
-    """Return C n r^(n-1), infinite at r = 0 for n < 1; overflow as for `power`."""
+    """Return C n r^(n-1), infinite at r = 0 for n < 1; the caller handles overflow."""
     return coefficient * exponent * raised(r, exponent - 1)
 
 
