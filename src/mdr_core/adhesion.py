@@ -234,7 +234,7 @@ class AdhesiveContact(NormalContact):
 
     @property
     def method(self) -> str:
-        """Method: closed forms only under a flat punch."""
+        """Method; closed forms exist only for a flat punch."""
         return "closed_form" if self.profile.has_no_partial_slip else "quadrature"
 
     @cached_property

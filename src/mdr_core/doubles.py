@@ -17,4 +17,4 @@ LARGEST: Final = 1e290
 """Sums of a few products are accurate if their factors lie between the inverse of this number and
 this number."""
 LOG_RANGE: Final = 600.0
-"""Bound on the logarithm of a ratio of radii: exp(-600) of 1e-50 is subnormal."""
+"""Bound on the logarithm of a ratio of radii: 1e-50 times exp(-600) is subnormal."""

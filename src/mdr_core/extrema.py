@@ -33,8 +33,8 @@ _NINE: Final = np.linspace(0.0, 1.0, 9)
 _CURVED, _PIECES, _DEGREE = 14.0, 28, 16
 
 
-# Intervals of the contact coordinate that may hold the highest peak of a load: the load and both
-# ends, all (k,).
+# Intervals of the contact coordinate that may contain the highest peak of a load: index of the
+# load, lower and upper end, all (k,).
 _Brackets = tuple[Indices, Array, Array]
 
 
@@ -53,7 +53,7 @@ def largest_stress(
     ----------
     profile : parameters broadcast with the loads.
     edge : contact radii a as contact coordinates, shape of the loads.
-    loaded : loads that are not zero.
+    loaded : True for loads that are not zero.
     slip : widths a - c of the slip annulus and stick radii c in the contact coordinate; None for
         c = 0.
     """

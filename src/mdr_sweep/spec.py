@@ -21,7 +21,8 @@ QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": _NORMAL,
     "tangential": (*_NORMAL, *TangentialContact.quantities),
     "torsion": (*_NORMAL, *TorsionalContact.quantities),
-    # Without the velocities and the numbers of cycles, which are columns of the input.
+    # The first quantities, velocities and numbers of cycles, are left out: they are columns of the
+    # input.
     "impact": Impact.quantities[2:],
     "wear": LimitingWear.quantities,
     "evolution": WearEvolution.quantities[1:],

@@ -23,7 +23,7 @@ from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
 from mdr_core.validation import extremes, not_negative, only_one
 
-# Place of the normal load from which a history starts.
+# Location in the request of the normal load from which a history starts.
 _BEGIN: Final = ("initial_state", "normal")
 
 

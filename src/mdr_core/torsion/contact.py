@@ -172,8 +172,8 @@ def solve(
     phi = mu E* P(c)/(2 pi G) and M = (8 mu E*/(3 pi)) [c^3 P(c) + 3 int_c^a y^2 P(y) dy], so that
     dM = (16/3) G c^3 dphi. Slip spreads inwards from the edge, into a flat as well; a flat punch
     sticks completely up to M = (2/3) mu F_N a. P grows without bound as c -> 0: no rotation reaches
-    the largest torque. Full slip is the state of rotations at which c is below the machine epsilon
-    times a: c is returned as zero there, and M is the largest torque in double precision.
+    the largest torque. If c is below the machine epsilon times a, the contact is in full slip: c is
+    returned as zero, and M equals the largest torque in double precision.
 
     Source: jaeger; lubkin; deresiewicz; notes, §16.
 
