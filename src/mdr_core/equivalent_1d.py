@@ -21,9 +21,10 @@ from mdr_core.typing import Array
 from mdr_core.validation import require_inside
 
 NARROW: Final = 0.05
-"""A step over an annulus up to this width, relative to a, is an integral. Up to this ratio to the
-load at full slip the width is the unknown. Beyond it differences amplify rounding errors at most
-20-fold. Within this part of full slip results are ill-conditioned (`conditioning`)."""
+"""A step over an annulus up to this width, relative to a, is an integral. The width is the unknown
+as long as the load is at most this part of the full-slip load. Beyond these limits differences
+amplify rounding errors at most 20-fold. Loads that differ from the full-slip load by less than this
+part of it are ill-conditioned (`conditioning`)."""
 # Slope at a coordinate, which is also given as a break and the distance from the break.
 _Slope = Callable[[Array, Array, Array], Array]
 
