@@ -181,7 +181,7 @@ def _between(stops: Array, count: int) -> Array:
 
 
 def _sampled(field: _Field, load: Indices, samples: Array, best: Array) -> _Brackets:
-    """Brackets around the samples that exceed their neighbours; the largest sample goes to `best`.
+    """Brackets around samples that may be at the highest peak; the largest goes to `best`.
 
     A peak is assumed to exceed its sample by at most as much as the sample exceeds the lower of its
     two neighbours.

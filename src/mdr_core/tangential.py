@@ -207,7 +207,7 @@ class TangentialContact(validity.ContactResults):
 
     @property
     def step_error(self) -> Array:
-        """Relative error of each case, apart from `_limit_error` [1]."""
+        """Relative error of each case, apart from the rounding of the load at full slip [1]."""
         return conditioning.OF_SUMS * self.normal.error_estimates + self._width_rounding
 
     @property

@@ -115,9 +115,10 @@ def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) ->
 
 
 def rim_error(edges: Edges, distance: Array) -> float:
-    """Return the relative error of a stress near edges (m, k), where it has a root [1].
+    """Return the error of a stress 1/sqrt(distance), for (m, k) distances from edges [1].
 
-    Points within four units in the last place of an edge are excluded.
+    The error is relative to the local stress. Points within four units in the last place of an edge
+    are excluded.
     """
     gap = np.abs(distance)
     gap = np.where(gap > edges.radius * ADJACENT, gap, inf)
