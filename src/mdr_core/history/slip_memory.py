@@ -9,8 +9,8 @@ form a polyline from the axis to the load point. Friction limits its slope to +-
 increase along the polyline and never exceed their values at the load point. From the vertices
 V_0 ... V_m a straight load step to P leaves
 
-    V_0 ... V_m, P if no vertex exceeds P in either sum: all springs stick, V_0 ... V_k, C, P
-    otherwise; V_k is the last vertex that does not, and the corner C the place
+    V_0 ... V_m, P       if no vertex exceeds P in either sum: all springs stick,
+    V_0 ... V_k, C, P    otherwise; V_k is the last vertex that does not, and the corner C the place
                          above it where the polyline exceeds P.
 
 `slip_kernel.PolylineStack` is this recurrence.
