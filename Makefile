@@ -77,16 +77,16 @@ sweeps: .venv/development
 	$(BIN)/python docs/figures/sweep_map.py
 
 # The charts of docs/accuracy.md: every one by `make charts`, one alone by `make chart-NAME`.
-CHARTS := pressure traction pareto hertz_contact partial_slip history contact_laws wear_evolution scaling wire stability
+CHARTS := pressure traction pareto hertz_contact partial_slip history contact_laws wear_evolution scaling wire stability calibration
 charts:
 	for name in $(CHARTS); do $(MAKE) --no-print-directory chart-$$name || exit 1; done
 
 chart-%: .venv-bench/peers
 	PYTHONPATH=.:benchmarks OMP_NUM_THREADS=1 .venv-bench/bin/python benchmarks/charts/$*.py
 
-# Needs no reference codes: the curves are those of the tests.
-chart-stability: .venv/development
-	PYTHONPATH=.:benchmarks $(BIN)/python benchmarks/charts/stability.py
+# Need no reference codes: the references are in the tests.
+chart-stability chart-calibration: .venv/development
+	PYTHONPATH=.:benchmarks $(BIN)/python benchmarks/charts/$(@:chart-%=%).py
 
 # Figures of the service under load and attack, over loopback: half an hour of a quiet machine.
 faults: .venv/development
