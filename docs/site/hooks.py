@@ -21,6 +21,7 @@ ROOT_FILES: Final = {
 _FORMULA: Final = re.compile(
     r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</(?:span|div)>', re.DOTALL
 )
+_BAR: Final = '<mo stretchy="false" lspace="0" rspace="0">|</mo>'
 _SCRIPT: Final = re.compile(r"<script>(.*?)</script>", re.DOTALL)
 _scripts: dict[str, str] = {}
 
@@ -48,7 +49,9 @@ def on_page_content(html: str, **_: object) -> str:
 
 
 def _mathml(found: "re.Match[str]") -> str:
-    return convert(unescape(found[3]), display="block" if found[2] == "[" else "inline")
+    text = convert(unescape(found[3]), display="block" if found[2] == "[" else "inline")
+    # A bar that stretches would be taller at the beginning of a row than elsewhere.
+    return text.replace("<mo>&#x0007C;</mo>", _BAR)
 
 
 def on_post_page(output: str, page: Any, **_: object) -> str:

@@ -9,12 +9,12 @@ class ExitStatus(IntEnum):
     OK = 0
     INTERNAL_ERROR = 1
     INVALID_INPUT = 2
-    """As argparse reports invalid arguments."""
+    """The status with which argparse reports invalid arguments."""
     ACCURACY_NOT_REACHABLE = 3
     OUTPUT_FAILED = 4
     NOT_INSTALLED = 5
     """The packages of the command are missing."""
     INTERRUPTED = 130
-    """As shells report programs terminated by SIGINT."""
+    """The status with which shells report programs terminated by SIGINT."""
     PIPE_CLOSED = 141
-    """As shells report programs terminated by SIGPIPE."""
+    """The status with which shells report programs terminated by SIGPIPE."""

@@ -14,7 +14,7 @@ from mdr_command import ExitStatus
 
 
 class Command(NamedTuple):
-    """Command with its summary, and its module with `run` and, for arguments, `declare`."""
+    """A command: its summary, and its module with `run` and, if it has arguments, `declare`."""
 
     summary: str
     example: str
@@ -83,7 +83,7 @@ def main(given: Sequence[str] | None = None) -> int:
     """Run a command line and return the exit status."""
     _open_streams()
     if isinstance(sys.stdout, TextIOWrapper):
-        # Formulas and symbols of texts are shown on every terminal.
+        # UTF-8 lets every terminal show the formulas and symbols of the texts.
         sys.stdout.reconfigure(errors="backslashreplace")
     try:
         status = _run(sys.argv[1:] if given is None else given)
@@ -91,7 +91,7 @@ def main(given: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return ExitStatus.INTERRUPTED
     except OSError as error:
-        # Python would try once more to write the rest on exit, and print a traceback.
+        # On exit Python would write the rest once more, fail, and print a traceback.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if isinstance(error, BrokenPipeError):
             return ExitStatus.PIPE_CLOSED
@@ -101,9 +101,9 @@ def main(given: Sequence[str] | None = None) -> int:
 
 
 def _open_streams() -> None:
-    """Open the standard streams that the caller closed: on the null device, which is not written.
+    """Open the standard streams that the caller closed, on the null device.
 
-    The next file or socket would otherwise take the place of standard output.
+    Otherwise the next file or socket would receive what is written to standard output.
     """
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
@@ -133,7 +133,7 @@ def _run(given: Sequence[str]) -> int:
 def parser_of(loaded: Container[str]) -> argparse.ArgumentParser:
     """Return the parser of all commands, with the arguments of those that are `loaded`."""
     parser = argparse.ArgumentParser(prog="mdr", description=_ABOUT)
-    # That of the core, whose import takes a third of a second.
+    # The version of the core is read without importing it, which takes a third of a second.
     shown = f"mdr {version('mdr-contact')}"
     if not any(Path(__file__).parents[1].glob("mdr_core/history/slip_kernel.*.so")):
         shown += " (without its compiled module: load histories take about 100 times longer)"

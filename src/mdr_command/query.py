@@ -168,9 +168,9 @@ def _content(arguments: argparse.Namespace) -> bytes:
 
 
 def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object] | None:
-    """Return the profile of a table or an area function, or None without.
+    """Return the profile given by a table or an area function; None if neither is given.
 
-    The parameters then need some kind.
+    The query parameters then need a placeholder for the kind of profile.
     """
     file, area, unit = (
         vars(arguments).get(name) for name in ("table", "area_coefficients", "length_unit")
@@ -276,7 +276,7 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
 
 
 def _option(name: str, names: Container[str]) -> str:
-    """Return a parameter of the service as the option; other names as they are."""
+    """Return the option of a parameter of the service; other names are unchanged."""
     return f"--{name.replace('_', '-')}" if name and name in names else name
 
 

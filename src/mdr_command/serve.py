@@ -36,29 +36,32 @@ def run(arguments: argparse.Namespace) -> int:
     """Serve until a signal ends the process."""
     host, port = arguments.host, arguments.port
     config = uvicorn.Config(
-        # Each server process imports it by its name.
+        # Each server process imports the application by its name.
         "mdr_service.app:create_app",
         factory=True,
         workers=arguments.workers,
         log_config=dict(observability.LOGGING),
         host=host,
         port=port,
-        # It accepts all waiting connections in one turn; uvloop accepts one, so that new clients
-        # starve beside some hundred that send small queries. A query takes as long with either.
+        # The asyncio loop accepts all waiting connections in one turn. uvloop accepts one, so that
+        # new clients starve beside hundreds that send small queries. A query takes as long with
+        # either loop.
         loop="asyncio",
         http=BoundedProtocol,
         backlog=BACKLOG,
         h11_max_incomplete_event_size=MAX_HEADER_BYTES,
         # Without a limit, a client that never reads its response would prevent the shutdown.
         timeout_graceful_shutdown=SETTINGS.shutdown_seconds,
-        # Longer than the pauses of clients and proxies that reuse connections; nginx has 75 s.
+        # The limit exceeds the pauses of clients and proxies that reuse connections; nginx has 75
+        # s.
         timeout_keep_alive=75,
         server_header=False,
         access_log=False,
         lifespan="on",
         ws="none",
     )
-    # Before the compute processes start, which takes a second: a used port is reported at once.
+    # The socket is bound before the compute processes start, which takes a second, so that a used
+    # port is reported at once.
     listener = _bind(host, port)
     # uvicorn raises the signal that stopped it once more, but a requested stop is not a failure.
     for each in (signal.SIGTERM, signal.SIGINT):

@@ -1,7 +1,7 @@
 """Adhesive contact of any profile after Johnson, Kendall and Roberts (JKR).
 
-An adhesive contact of radius a is the contact without adhesion of the same radius, its reference,
-less the state of a flat punch that is retracted by
+The reference of an adhesive contact of radius a is the contact of that radius without adhesion. The
+adhesive contact is the reference less a flat punch that is retracted by
 
     Delta_l(a) = sqrt(2 pi a w/E*),    d = g(a) - Delta_l,    F_N = F_0(a) - 2 E* a Delta_l,
 
@@ -45,14 +45,15 @@ _DISTANCES: Final = np.logspace(-75, 75, 1801)
 _IN_PIECE: Final = 9
 # Delta_l of a paraboloid at pull-off over the range of adhesion, for Tabor's number 1.
 _TABOR: Final = sqrt(2 * pi) * (9 * pi / 8) ** (1 / 6)
-# Tabor's number from which JKR holds. Source: johnson-greenwood.
+# Tabor's number above which JKR theory is valid. Source: johnson-greenwood.
 _JKR: Final = 5.0
 
 
 class Curve:
     """Equilibrium states of one profile over the contact coordinate, with c = sqrt(2 pi w/E*).
 
-    Loads are depths [length], and F_N/E* [length^2] under the name `normal_force`.
+    A load is a depth [length] or, under the name `normal_force`, the reduced force F_N/E*
+    [length^2].
     """
 
     def __init__(self, profile: Profile, c: float) -> None:
@@ -111,7 +112,7 @@ class Curve:
             return self.profile.reduced_force(coordinate) - self.stiffness(coordinate) * retraction
 
     def excess(self, share: float, coordinate: Array) -> Array:
-        """phi/c less a share: a g'/Delta_l in excess of that at pull-off [1]."""
+        """phi/c less a share: the excess of a g'/Delta_l over its value at pull-off [1]."""
         with np.errstate(all="ignore"):
             punch = self.profile.has_no_partial_slip
             slope = inf if punch else self.profile.depth_slope(coordinate)
@@ -121,7 +122,7 @@ class Curve:
         share = _SHARES[name]
 
         def height(coordinate: Array) -> Array:
-            """(phi - level)/(phi + level): root finding takes no infinite values."""
+            """The form (phi - level)/(phi + level) is finite, as root finding requires."""
             return 1 - 2 * share / (2 * share + self.excess(share, coordinate))
 
         nodes, values = self._nodes, height(self._nodes)
@@ -162,7 +163,7 @@ class Curve:
 
 
 def _roots(function: Callable[..., Array], low: Array, high: Array, *given: Array) -> Array:
-    """Return the roots in brackets; the nearer end where rounding leaves no change of sign."""
+    """Return the root in each bracket, or its nearer end if rounding leaves no sign change."""
     if not low.size:
         return low
     found = find_root(function, (low, high), args=given)
@@ -174,12 +175,12 @@ def _roots(function: Callable[..., Array], low: Array, high: Array, *given: Arra
 class AdhesiveContact(NormalContact):
     """Profile in adhesive contact with a half-space, under any number of loads.
 
-    Results are those of a `NormalContact`, and the pull-off.
+    It has the results of a `NormalContact`, and the pull-off.
     """
 
     curve: Curve
     retraction: Array
-    """Retraction from the reference [length]: Delta_l, or less on a flat punch."""
+    """Retraction from the reference [length]: Delta_l, or less than Delta_l on a flat punch."""
     tabor_number: float = inf
     """Tabor's number from Delta_l at pull-off; infinite without a range of adhesion [1]."""
     states: int = 1
@@ -248,7 +249,7 @@ class AdhesiveContact(NormalContact):
             return punch * excess / self._excess("indentation_depth")
 
     def _excess(self, name: str) -> Array:
-        """a g'/Delta_l in excess of that at pull-off; infinite under a flat punch [1]."""
+        """Excess of a g'/Delta_l over its value at pull-off; infinite under a flat punch [1]."""
         if self.profile.has_no_partial_slip:
             return full(inf, self.coordinate)
         excess = self.curve.excess(_SHARES[name], self.coordinate)
@@ -262,7 +263,7 @@ class AdhesiveContact(NormalContact):
 
     @property
     def data_error(self) -> Array | None:
-        """That of the reference."""
+        """Condition number of the reference contact."""
         return self.reference.data_error
 
     @property
@@ -295,8 +296,8 @@ class AdhesiveContact(NormalContact):
     def error_estimates(self) -> Array:
         """Bound of the error of each load's results [1].
 
-        Results that may vanish are compared with the sum of the sizes of their two parts, those of
-        the reference and of the retraction. The stiffness is infinite at pull-off.
+        The error of a result that may vanish is relative to the sum of the absolute values of its
+        two parts: the reference and the retraction. The stiffness is infinite at pull-off.
         """
         change = 3 * self.profile.steepness * self.edge_errors
         stable = self._excess("indentation_depth")
@@ -325,7 +326,7 @@ class AdhesiveContact(NormalContact):
         return (*super().warnings_without_bodies, *found)
 
     def superposed(self, field: Callable[[NormalContact], Any]) -> Array:
-        """Return a field of the reference, by load, less that of the retracted flat punch."""
+        """Return the difference of a field, by load, between reference and retracted flat punch."""
         whole = np.asarray(field(self.reference))
         ends = zip(*map(np.ravel, (self.contact_radius, self.retraction)), strict=True)
         punches = (self.curve.pressed(FlatPunch(a), self.e_star, step) for a, step in ends)
@@ -347,7 +348,7 @@ def solve(
 ) -> AdhesiveContact:
     """Return the adhesive contact under a prescribed depth, force or contact radius.
 
-    The state is the outermost stable one, in which the contact is after unloading.
+    The state is the outermost stable one, which the contact reaches by unloading.
 
     Source: jkr; popov-adhesion; notes, §13.
 
@@ -358,13 +359,13 @@ def solve(
     work_of_adhesion : w, energy per area [force/length], > 0.
     indentation_depth, normal_force, contact_radius : exactly one [length], [force], [length]; a
         number or an array. The first two may be negative down to the pull-off; the contact radius
-        is one that is stable under a prescribed depth.
+        must be stable under a prescribed depth.
     range_of_adhesion : distance over which surfaces attract [length], for the warning `jkr_range`.
 
     Raises
     ------
     InputError : a load below the pull-off, which the message contains; a contact that adhesion
-        spreads beyond the profile; or what `normal.solve` rejects.
+        spreads beyond the profile; or input that `normal.solve` rejects.
 
     Examples
     --------
@@ -413,7 +414,7 @@ def on_curve(
 
 
 def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, Array, int]:
-    """Coordinate and retraction under each load, and the most states under one of them."""
+    """Coordinate and retraction under each load, and the largest number of stable states."""
     profile, states = curve.profile, 1
     if name == "contact_radius":
         validation.require_positive(("load", name), load)
@@ -428,7 +429,7 @@ def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, 
     of_force = name == "normal_force"
     unit = e_star if of_force else 1.0
     amount, least = load / unit, curve.least[name]
-    # Under a tip as sharp as the root of r the contact vanishes at zero load.
+    # Under a tip as sharp as sqrt(r) the contact vanishes at zero load.
     below = np.asarray(amount < least * (1 + ROUNDING) if least else amount <= 0)
     if some(below):
         pull_off = "pull-off force" if of_force else "pull-off depth"

@@ -1,7 +1,7 @@
 """Relative condition numbers of partial slip with respect to the loads.
 
 Loads are rounded. Where results change much between neighbouring loads, as the stick radius does
-near full slip, the rounding of the load is part of their error, whatever the method.
+near full slip, the rounding error of the load limits the accuracy of every method.
 """
 
 from collections.abc import Callable
@@ -17,7 +17,8 @@ from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags
 
 OF_SUMS: Final = 40.0
-"""Rounding error of sums over annuli and segments, relative to that of closed forms."""
+"""Rounding error of sums over annuli and segments, relative to the rounding error of closed
+forms."""
 
 
 def near_full_slip(
@@ -31,18 +32,18 @@ def near_full_slip(
 ) -> Array:
     """Return the largest condition number of each load's results near full slip [1].
 
-    The distance from full slip is F_N(c) under a force and d(c) under a displacement. Its condition
-    number passes to c by the inverse of the function's logarithmic derivative, and from c to all
-    other results.
+    The distance from full slip is F_N(c) under a force and d(c) under a displacement. Divided by
+    the logarithmic derivative of the distance with respect to c, its condition number is the
+    condition number of c. All other results follow from c.
 
     Parameters
     ----------
     profile : parameters broadcast with the loads.
     ends : a and c in the contact coordinate.
-    ratio : load over that of full slip [1].
+    ratio : load divided by the load at full slip [1].
     partial : True in partial slip.
     force_prescribed : True if the tangential force is prescribed, False for the displacement.
-    edges : True to include c and a - c beside forces, displacements and energies.
+    edges : True to include c and a - c in addition to forces, displacements and energies.
     """
     late = partial & (ratio > 1 - NARROW)
     if not some(late):
@@ -106,9 +107,9 @@ def narrow_annulus(coordinate: Array, width: Array) -> Array:
 
 
 def of_edge_slope(contact: NormalContact) -> Array:
-    """Return the relative error of a slip annulus by the rounding of the contact coordinate [1].
+    """Return the relative error of a slip annulus due to rounding of the contact coordinate [1].
 
-    The width of a narrow one is inversely proportional to g' at the edge, which changes rapidly
+    The width of a narrow annulus is inversely proportional to g' at the edge. g' changes rapidly
     just beyond a break, and where it falls to zero.
     """
     profile, at = contact.profile, contact.coordinate
@@ -117,7 +118,8 @@ def of_edge_slope(contact: NormalContact) -> Array:
     at = where(at > 0, at, np.nan)
     with np.errstate(all="ignore"):
         error = np.maximum(contact.edge_errors, ADJACENT)
-        # A radius that is the coordinate itself does not move onto a break that it has not reached.
+        # A prescribed radius that is the contact coordinate is exact: rounding does not move it
+        # onto a break.
         exact = (contact.control == "contact_radius") & (at == contact.contact_radius)
         sides = np.stack(np.broadcast_arrays((1 - error) * at, where(exact, at, (1 + error) * at)))
         slopes = profile.depth_slope(sides)
@@ -126,7 +128,7 @@ def of_edge_slope(contact: NormalContact) -> Array:
 
 
 def of_steep_edge(profile: Profile, edge: Array, steps: tuple[Array, Array]) -> Array:
-    """Return the relative error of wide annuli by the rounding of c where loads rise steeply [1].
+    """Return the relative error of wide annuli due to rounding of c where loads rise steeply [1].
 
     Parameters
     ----------

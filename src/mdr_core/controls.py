@@ -1,9 +1,9 @@
-"""Samples that load steps need by default, by the names of their controls."""
+"""Default number of samples of a load step, by the names of its controls."""
 
 from typing import Final
 
-# Samples with which the energy of nine curved cycles in ten is within 0.1 %; the error falls with
-# the square of their number. Source: http.md, Cost of a coarse path.
+# With this number of samples the energy of nine curved cycles in ten is within 0.1 %; the error
+# falls with the square of the number. Source: http.md, Cost of a coarse path.
 _ON_CURVES: Final = 20
 
 

@@ -1,8 +1,8 @@
 """One formula for a number and for arrays; ordered sums; blocks of bounded size.
 
-A single load is carried as `np.float64`, not as an array without dimension, on which every
-operation takes ten times as long. The same formulas serve both; these functions evaluate only the
-formula that a single number needs, and return a number.
+A single load is an `np.float64`, because every operation on an array without dimension takes ten
+times as long. One formula serves numbers and arrays. For a single number these functions evaluate
+only the branch that it needs, and return a number.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,8 @@ from mdr_core.typing import Array, Parameter
 # Types of single numbers and flags; NumPy's doubles are floats as well.
 _NUMBERS: Final = (float, int)
 _FLAGS: Final = (np.bool_, bool)
-# Values evaluated at once: arrays above 128 kB, here of complex numbers, are mapped each time.
+# Number of values evaluated at once. The memory of a larger array, above 128 kB in complex numbers,
+# is mapped at every allocation, which is slow.
 _AT_ONCE: Final = 8_192
 
 
@@ -35,7 +36,7 @@ def _number(value: Any) -> Any:
 
 
 def some(flags: Any) -> bool:
-    """True if a flag is set, in a tenth of the time of NumPy's method, or less for a single one."""
+    """True if a flag is set, in at most a tenth of the time of NumPy's method."""
     return bool(np.count_nonzero(flags) if isinstance(flags, np.ndarray) else flags)
 
 
@@ -54,14 +55,14 @@ def where(condition: Any, this: Any, other: Any) -> Any:
 def piecewise(
     place: Any, start: Any, below: Callable[[Any], Any], beyond: Callable[[Any], Any]
 ) -> Any:
-    """Return below(place) up to `start` and beyond(place) from there on.
+    """Return below(place) up to `start` and beyond(place) beyond it.
 
     Each formula sees only places on its own side.
 
     Parameters
     ----------
     place : numbers or arrays at which the formulas are evaluated.
-    start : place from which on `beyond` holds.
+    start : place beyond which `beyond` applies.
     below, beyond : formulas, each of a place.
     """
     if is_number(place) and is_number(start):
@@ -80,12 +81,12 @@ def common_shape(*values: Any) -> tuple[int, ...]:
 
 
 def broadcast(value: Any, shape: tuple[int, ...]) -> Any:
-    """Return a value in a shape; a number where the shape has no dimension."""
+    """Broadcast a value to a shape; a shape without dimensions gives a number."""
     return value if getattr(value, "shape", ()) == shape else np.broadcast_to(value, shape)
 
 
 def full(value: Parameter, like: Any) -> Any:
-    """Return a value in the shape of an array, or as a number."""
+    """Broadcast a value to the shape of an array, or return a number if that is a number."""
     return np.float64(value) if is_number(like) else np.full_like(like, value, dtype=float)
 
 
@@ -94,11 +95,11 @@ def in_order(weights: Array, values: Array) -> Array:
     added = (1,) * (values.ndim - weights.ndim)
     spread = weights.reshape(weights.shape[:1] + added + weights.shape[1:])
     terms = np.multiply(spread, values, order="C")
-    # NumPy adds numbers that are contiguous in pairs, rows in their order.
+    # NumPy adds contiguous numbers pairwise, but rows in their order.
     return np.add.accumulate(terms)[-1] if terms[0].size == 1 else np.add.reduce(terms)
 
 
 def in_blocks(count: int, values: int = 1) -> list[slice]:
-    """Return slices of `count` rows of so many values each, which bound the size of arrays."""
+    """Divide `count` rows of `values` numbers each into slices of bounded size."""
     step = max(_AT_ONCE // values, 1)
     return [slice(start, start + step) for start in range(0, count, step)]

@@ -1,7 +1,7 @@
 """Equivalent one-dimensional problem: steps of depth and force between c and a, and stick edges.
 
-Near incipient slip a difference of two values at a and c suffers cancellation. There the width of
-the slip annulus, in the contact coordinate, is the unknown, and a step over a narrow annulus is an
+Near incipient slip the difference of a function between a and c suffers cancellation. Then the
+unknown is the width of the slip annulus in the contact coordinate, and the difference is an
 integral of the slope.
 
 Source: notes, §1 and §4.
@@ -21,10 +21,11 @@ from mdr_core.typing import Array
 from mdr_core.validation import require_inside
 
 NARROW: Final = 0.05
-"""Width of an annulus, relative to a, up to which a step is an integral, and part of the load at
-full slip up to which the width is the unknown: beyond it differences amplify rounding errors at
-most 20-fold. Within this part of full slip results are ill-conditioned (`conditioning`)."""
-# The slope at a coordinate, given as a break and the distance from it as well.
+"""A step over an annulus up to this width, relative to a, is an integral. The width is the unknown
+as long as the load is at most this part of the full-slip load. Beyond these limits differences
+amplify rounding errors at most 20-fold. Loads that differ from the full-slip load by less than this
+part of it are ill-conditioned (`conditioning`)."""
+# Slope at a coordinate, which is also given as a break and the distance from the break.
 _Slope = Callable[[Array, Array, Array], Array]
 
 
@@ -89,15 +90,15 @@ def stick_edge(
 ) -> tuple[Array, Array]:
     """Return stick edge and width of the slip annulus, both in the contact coordinate.
 
-    At small ratios the width is the unknown of a step of the load, at large ones c, by the closed
-    inverse if there is one. Source: mdr-5, Eqs. (5.19), (5.20).
+    At small ratios the unknown is the width. At large ratios it is c, from the closed inverse if
+    there is one. Source: mdr-5, Eqs. (5.19), (5.20).
 
     Parameters
     ----------
     profile : parameters broadcast with the loads.
     coordinate : contact radii as contact coordinates.
-    ratio, rest : F_x/(mu F_N) and 1 - F_x/(mu F_N), each accurate by itself; of displacements if
-        not `of_force`.
+    ratio, rest : F_x/(mu F_N) and 1 - F_x/(mu F_N), each accurate by itself; ratios of
+        displacements if `of_force` is false.
 
     Returns
     -------
@@ -151,7 +152,7 @@ def _step(
     below, before = break_below(profile, high)
     limit = np.minimum(NARROW * high, (high - before) / 2)
     if profile.steepens:
-        # A steep load is not smooth over as much of the radius.
+        # The steeper the load, the narrower the annulus over which it is smooth.
         rate = slope(high, below, high - below)
         limit = np.minimum(limit, NARROW * function(high) / where(rate > 0, rate, inf))
     narrow = width <= limit
@@ -169,12 +170,12 @@ def _step(
 
 
 def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Array:
-    """int slope ds over [high - width, high], split at the break `below` if that is inside.
+    """Integral of the slope over [high - width, high], split at the break `below` if it is inside.
 
     Beyond a break the slope is smooth in v, s = break + v^2.
     """
     low = high - width
-    # Not low - below: next to a break it is dominated by the rounding error of low.
+    # Next to a break, low - below would be dominated by the rounding error of low.
     beyond = np.maximum((high - below) - width, 0.0)
     top, bottom = np.sqrt(high - below), np.sqrt(beyond)
     inner = np.minimum(width, high - below)
@@ -196,7 +197,7 @@ def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Arra
 
 
 def break_below(profile: Profile, high: Array) -> tuple[Array, Array]:
-    """Return the nearest break below each coordinate and the one before it; zero for none."""
+    """Return the two nearest breaks below each coordinate; zero where there is none."""
     breaks = profile.coordinate_breaks
     if profile.swept and breaks.size:
         # Every case of a sweep has its own break.

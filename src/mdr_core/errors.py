@@ -14,7 +14,7 @@ Remedy = Literal[
     "wear_evolution",
     "conforming_contact",
 ]
-"""What a warning names in place of the contact as it is."""
+"""Remedy named by a warning."""
 
 
 class MDRError(Exception):
@@ -64,8 +64,9 @@ class Notice:
     code: str
     message: str
     value: float | None = None
-    """Size of the finding, the largest of all cases; None where it has none."""
+    """Largest value of the quantity that raised the warning, over all cases; None if there is no
+    such quantity."""
     limit: float | None = None
-    """Limit that the value exceeds."""
+    """Limit that `value` exceeds."""
     instead: Remedy | None = None
     """Remedy; None where there is none."""

@@ -17,11 +17,12 @@ from mdr_core.profiles import Paraboloid, Power, Profile, RoundedPunch, Tabulate
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.validation import extremes, first_index, require_inside, require_not_negative
 
-# A stress at a radius, given as a contact coordinate, under the load of that index; all (m,).
+# Stress at radii, given as contact coordinates, under the loads of these indices; all (m,).
 _Field = Callable[[Indices, Array], Array]
 
-# Samples between two singular radii, clustered at both. The pressure under the power r^100 has the
-# narrowest smooth peak, next to the contact edge: four samples lie above half its height.
+# Number of samples between two singular radii, at both of which they cluster. The pressure under
+# the power r^100 has the narrowest smooth peak, next to the contact edge: four samples lie above
+# half its height.
 _SAMPLES: Final = 64
 # Relative variation of the stress in the last bracket.
 _LEAST_STEP: Final = 1e-13
@@ -32,13 +33,13 @@ LEAST_GAP: Final = 1e-13
 # Points across the bracket of a peak, in parts of it. Each interval of a table, whose interpolation
 # may have a peak in every one, is sampled as finely.
 _NINE: Final = np.linspace(0.0, 1.0, 9)
-# Size of log(s/b) up to which one curve of Bernstein polynomials serves all rounded punches, whose
-# contacts are similar; number and degree of the polynomials, which leave 2e-14.
+# All contacts of rounded punches are similar. One curve of Bernstein polynomials serves them up to
+# this absolute value of log(s/b); number and degree of the polynomials leave an error of 2e-14.
 _CURVED, _PIECES, _DEGREE = 14.0, 28, 16
 
 
-# Intervals of the contact coordinate that may hold the highest peak of a load: the load and both
-# ends, all (k,).
+# Intervals of the contact coordinate that may contain the highest peak of a load: index of the
+# load, lower and upper end, all (k,).
 _Brackets = tuple[Indices, Array, Array]
 
 
@@ -47,9 +48,9 @@ def largest_stress(
 ) -> Array:
     """Return the largest (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx of each contact [1].
 
-    It is p/E* for c = 0 and |tau|/(mu E*) otherwise. Infinite where [c, a] holds a sharp tip, a
-    slope discontinuity or the edge of a flat punch; zero without a load. Under a paraboloid it is
-    (2/(pi R)) sqrt(a^2 - c^2), at r = c.
+    It is p/E* for c = 0 and |tau|/(mu E*) otherwise. The stress is infinite if [c, a] contains a
+    sharp tip, a slope discontinuity or the edge of a flat punch, and zero without a load. Under a
+    paraboloid it is (2/(pi R)) sqrt(a^2 - c^2), at r = c.
 
     Source: mdr-5, Eqs. (5.38), (5.68), (5.70).
 
@@ -57,7 +58,7 @@ def largest_stress(
     ----------
     profile : parameters broadcast with the loads.
     edge : contact radii a as contact coordinates, shape of the loads.
-    loaded : loads that are not zero.
+    loaded : True for loads that are not zero.
     slip : widths a - c of the slip annulus and stick radii c in the contact coordinate; None for
         c = 0.
     """
@@ -163,7 +164,7 @@ def _infinite(
     for b in profile.infinite_pressure_radii:
         begins = c <= b
         if slip and not profile.has_no_partial_slip:
-            # A radius just beyond a flat may round to that of the flat.
+            # A radius just beyond a flat may round to the radius of the flat.
             begins = where(b == profile.first_radius, slip[1] <= 0, begins)
         infinite = infinite | (loaded & begins & (b <= a))
     return infinite
@@ -236,10 +237,10 @@ def _between(stops: Array, count: int) -> Array:
 
 
 def _sampled(field: _Field, load: Indices, samples: Array, best: Array) -> _Brackets:
-    """Brackets around the samples that rise above the others, whose largest value goes to `best`.
+    """Brackets around samples that may be at the highest peak; the largest goes to `best`.
 
-    Between its neighbours a peak is taken to exceed the sample by no more than the sample exceeds
-    the lower one of them.
+    A peak is assumed to exceed its sample by at most as much as the sample exceeds the lower of its
+    two neighbours.
     """
     values = field(np.repeat(load, samples.shape[1]), samples.ravel()).reshape(samples.shape)
     best[load] = values.max(axis=1)
@@ -254,11 +255,11 @@ def _sampled(field: _Field, load: Indices, samples: Array, best: Array) -> _Brac
 
 
 def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
-    """Zoom into each bracket around its highest point; the top of its peak goes to `best`.
+    """Zoom into each bracket around its highest point, and write the top of its peak to `best`.
 
-    The peak is taken to exceed the highest of the nine points by no more than that exceeds the
-    lowest one: a bracket that stays below the highest peak is left. In the last bracket the
-    stress or the place varies by rounding errors.
+    The peak is assumed to exceed the highest of the nine points by at most as much as that point
+    exceeds the lowest. A bracket whose peak must stay below `best` is dropped. In the last bracket
+    the stress or the place varies by rounding errors.
     """
     load, low, high = brackets
     for _ in range(MAX_STEPS):

@@ -1,7 +1,7 @@
 """Oblique impact: elastic normal motion, and friction with the memory of the slip annulus.
 
 The normal motion is a quadrature of the energy. The tangential motion follows by iteration over the
-whole impact: displacements determine the forces, and these the displacements, until nothing
+whole impact: displacements determine forces, and forces determine displacements, until nothing
 changes. Samples are doubled until the estimated error is small enough. Source: notes, §14.
 """
 
@@ -35,22 +35,24 @@ from mdr_core.validation import (
 )
 
 _APPROACH: Final = f"{POSITIVE} and finite: approach is positive"
-# Samples of the compression, in turn.
+# Numbers of samples of the compression, used one after the other.
 _SAMPLES: Final = tuple(12 << doublings for doublings in range(11))
-# Differences of two solutions that an estimate needs. The error falls by four with each doubling,
-# but unevenly, because slip begins and ends anywhere between two samples: single differences were
-# too small by up to 4 in 200 random impacts, and the largest of three was not.
+# Number of differences between two solutions that an estimate needs. The error falls by a factor of
+# four with each doubling, but unevenly, because slip begins and ends anywhere between two samples.
+# In 200 random impacts single differences understated it by a factor of up to 4, and the largest of
+# three did not.
 _DIFFERENCES: Final = 3
-# Samples with which the iteration converges, unless the contact point oscillates about ten times.
+# With this number of samples the iteration converges, unless the contact point oscillates about ten
+# times.
 _ENOUGH: Final = 384
-# Nodes and weights of the time between two samples, in the root of the distance from the first one,
-# where g' may be infinite as one over this root.
+# Nodes and weights for the time between two samples. The variable is the root of the distance from
+# the first sample, because g' may grow there like the inverse of this root.
 _ROOTS, _SHARES = composite_rule(5)
 _NODES, _WEIGHTS = np.square(_ROOTS), 2 * _ROOTS * _SHARES
-# Change of the displacements, over the largest, at which the iteration ends: rounding errors may
-# keep a change of 1e-11.
+# The iteration ends at this change of the displacements, relative to the largest; rounding errors
+# may sustain a change of 1e-11.
 _CONVERGED: Final = 1e-10
-# Sweeps of the iteration at most: a solid sphere takes 12, a contact point that oscillates more.
+# Maximum number of iterations: a solid sphere takes 12, a contact point that oscillates takes more.
 _SWEEPS: Final = 100
 
 
@@ -75,11 +77,13 @@ class Impact(validity.ContactResults):
     dissipated_energy: Array
     """Energy dissipated by friction [force length]."""
     regime: "np.ndarray[Any, np.dtype[np.str_]]"
-    """Slip regime: "stick" without tangential motion, "full_slip" if all slides throughout."""
+    """Slip regime: "stick" without tangential motion, "full_slip" if the whole contact always
+    slides."""
     error_estimate: float
-    """Estimate of the error of all results, over the larger value before or after the impact."""
+    """Estimate of the error of all results, relative to the larger value before or after the
+    impact."""
     rtol: float
-    """Required relative accuracy, which `error_estimate` is compared with."""
+    """Required relative accuracy, to compare with `error_estimate`."""
     quantities: ClassVar[tuple[str, ...]] = (
         "normal_velocity",
         "tangential_velocity",
@@ -96,7 +100,7 @@ class Impact(validity.ContactResults):
 
     @property
     def normal_rebound_velocity(self) -> Array:
-        """Velocity of separation [length/time]; the motion is elastic: the velocity of approach."""
+        """Velocity of separation [length/time], equal to the velocity of approach."""
         return self.normal_velocity
 
     @property
@@ -111,7 +115,7 @@ class Impact(validity.ContactResults):
 
     @property
     def slips_from(self) -> Array:
-        """Least radius with slip [length], in full slip alone; else infinite."""
+        """Least radius with slip [length] in full slip; infinite otherwise."""
         return np.where(self.regime == "full_slip", 0.0, np.inf)
 
     @property
@@ -147,12 +151,12 @@ class _Rebound(NamedTuple):
     """All springs slip throughout."""
 
     def extrapolated(self, coarse: "_Rebound") -> "_Rebound":
-        """Return the results without their error of second order, from half as many samples."""
+        """Return Richardson's extrapolation of the results with half as many samples."""
         *fine, slides = self
         velocity, duration, impulse, dissipated = (
             one + (one - other) / 3 for one, other in zip(fine, coarse, strict=False)
         )
-        # Below its own error the energy may not become negative.
+        # Extrapolation must not make an energy negative that is below its own error.
         return _Rebound(velocity, duration, impulse, max(dissipated, 0.0), bool(slides))
 
 
@@ -182,9 +186,9 @@ def solve(
 ) -> Impact:
     """Return the rebound of two bodies that hit each other obliquely.
 
-    The normal motion m d'' = -F_N is elastic. In the tangential one, m_t u'' = -F_x, the force
-    follows from the history of depth and displacement of the contact point: every part of the
-    contact sticks until its own limit of friction.
+    The normal motion m d'' = -F_N is elastic. In the tangential motion m_t u'' = -F_x the force
+    follows from the history of depth and displacement of the contact point. Every part of the
+    contact sticks up to its own limit of friction.
 
     Source: notes, §14.
 
@@ -193,14 +197,14 @@ def solve(
     profile : profile of any kind, with single numbers as parameters.
     e_star, g_star : effective moduli [pressure], > 0, or the material that has them, for each.
     friction_coefficient : mu [1], > 0.
-    normal_mass, tangential_mass : effective masses m and m_t of the contact point [mass]. A free
-        body of mass m and moment of inertia I about its centre, at the distance rho from the
-        contact point, has 1/m_t = 1/m + rho^2/I: a solid sphere 2/7 m. Of two free bodies the
-        inverse masses add.
+    normal_mass, tangential_mass : effective masses m and m_t of the contact point [mass]. For a
+        free body of mass m and moment of inertia I about its centre, which is at the distance rho
+        from the contact point, 1/m_t = 1/m + rho^2/I; a solid sphere has m_t = 2/7 m. The inverse
+        masses of two free bodies add.
     normal_velocity : velocity of approach [length/time], > 0, shape (n,).
     tangential_velocity : velocity of the contact point [length/time], of either sign, shape (n,).
-    rtol : required relative accuracy, 1e-13 to 1e-3. A looser one takes less time. About 2e-7 can
-        be reached; the warning `accuracy` reports a miss.
+    rtol : required relative accuracy, 1e-13 to 1e-3. A looser tolerance takes less time. The best
+        accuracy is about 2e-7; the warning `accuracy` is raised where `rtol` is not reached.
 
     Returns
     -------
@@ -257,7 +261,7 @@ def solve(
 
 
 def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> tuple[Array, ...]:
-    """Velocities of one shape, or an InputError."""
+    """Return the velocities in their common shape; raise InputError if they are invalid."""
     speeds = as_numbers(("normal_velocity",), normal_velocity)
     along = as_numbers(("tangential_velocity",), tangential_velocity)
     for name, good, detail in (
@@ -277,7 +281,7 @@ def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> t
 
 
 def _largest_coordinates(profile: Profile, energy: Array) -> Array:
-    """Contact coordinates at which E/E* of the contact is the kinetic energy [length^3]."""
+    """Contact coordinates at which the elastic energy over E* has a value [length^3]."""
     if profile.domain < np.inf:
         beyond = energy > profile.reduced_energy(number(profile.domain))
         require_inside(("normal_velocity",), beyond, profile, "velocity or the mass")
@@ -294,10 +298,11 @@ def _largest_coordinates(profile: Profile, energy: Array) -> Array:
 
 
 def _refined(scene: _Scene, rtol: float) -> tuple[_Rebound, float]:
-    """Return the results of an impact, extrapolated from the last two of `_SAMPLES`, and an error.
+    """Return the extrapolated results of an impact, and an estimate of their error.
 
-    The error is the largest difference between two numbers of samples so far, each divided by four
-    with every later doubling, and that between the work of friction and the loss of energy.
+    The estimate is the largest difference between solutions with two numbers of samples, each
+    divided by four with every later doubling, or the difference between the work of friction and
+    the loss of energy, if that is larger.
     """
     solved: list[_Rebound] = []
     error, course = 0.0, np.zeros((2, 1))
@@ -355,13 +360,14 @@ def _motion(scene: _Scene, count: int) -> _Motion:
 def _rebound(scene: _Scene, motion: _Motion, guess: Array) -> tuple[_Rebound, Array] | None:
     """Solve m_t u'' = -F_x along a normal motion; return the results, and times and displacements.
 
-    None if the iteration does not converge. F_x/F_N is linear between the samples, so that sliding
-    is exact, and so is sticking with the normal motion's frequency.
+    Returns None if the iteration does not converge. F_x/F_N is linear between the samples. Sliding
+    is therefore exact, and so is sticking if the tangential motion has the frequency of the normal
+    motion.
 
     Parameters
     ----------
-    guess : times and displacements from which the iteration starts, both from zero on, shape (2,
-        n); of a free motion if n = 1.
+    guess : times and displacements from which the iteration starts, both beginning with zero, shape
+        (2, n); n = 1 means free motion.
     """
     start, mass, velocity = scene.start, scene.tangential_mass, scene.tangential_velocity
     step, time = motion.step, np.cumsum(motion.step)
@@ -391,7 +397,7 @@ def _rebound(scene: _Scene, motion: _Motion, guess: Array) -> tuple[_Rebound, Ar
 
 
 def _difference(scene: _Scene, coarse: _Rebound, fine: _Rebound) -> float:
-    """Return the largest difference of two results, each over its scale."""
+    """Return the largest difference between two results, relative to the scale of each quantity."""
     duration = abs(coarse.duration / fine.duration - 1)
     largest = _largest_velocity(scene, fine)
     if not largest:
@@ -405,7 +411,7 @@ def _difference(scene: _Scene, coarse: _Rebound, fine: _Rebound) -> float:
 
 
 def _imbalance(scene: _Scene, result: _Rebound) -> float:
-    """Return the difference of the work of friction and the loss of energy, over the energy."""
+    """Return the relative difference between the work of friction and the loss of energy."""
     before, after = scene.tangential_velocity, result.velocity
     largest, mass = _largest_velocity(scene, result), scene.tangential_mass
     if not largest:

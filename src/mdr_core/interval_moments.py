@@ -1,13 +1,13 @@
 """Moments of the conjugate's slope over intervals of the normal coordinate.
 
 The normal coordinate n of a contact is its depth d, where displacements are prescribed, or its
-reduced force I = F_N/E*, where forces are. The other of the two is its conjugate y. From
-dI = 2 a dd the slope y' = dy/dn is 2a or 1/(2a): it is monotonic, so |dy'| is a positive measure.
-Over depths it counts the foundation springs, 2 dx, that come into contact.
+reduced force I = F_N/E*, where forces are prescribed. The other one is its conjugate y. From dI = 2
+a dd the slope y' = dy/dn is 2a or 1/(2a): it is monotonic, so |dy'| is a positive measure. Over
+depths it counts the foundation springs, 2 dx, that come into contact.
 
 Steps of the conjugate and all energies of a load history are integrals of polynomials of degree
-0 to 2 over this measure. Formed from the three moments below, none of them suffers cancellation,
-however narrow the interval and however small the amplitude. Source: notes, §6 and §10.
+0 to 2 over this measure. Computed from the three moments below, they are free of cancellation for
+every interval and amplitude. Source: notes, §6 and §10.
 """
 
 from dataclasses import dataclass
@@ -25,10 +25,10 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import NODES, cumulative_rule
 from mdr_core.typing import Array, Flags, Indices
 
-# An interval is wide if the normal coordinate grows on it by more than the first factor, or the
-# contact radius, or the distance from a pole of the slope, by more than the second, beyond a break
-# the radius by the third. Differences of closed forms over a wide interval hardly suffer
-# cancellation.
+# An interval is wide if the normal coordinate grows on it by more than the first factor, or if the
+# contact radius or the distance from a pole of the slope grows by more than the second. Beyond a
+# break the third factor applies to the radius. Differences of closed forms over a wide interval
+# hardly suffer cancellation.
 _WIDE_IN_NORMAL, _WIDE, _WIDE_BEYOND_BREAK = 16.0, 3.0, 1.3
 
 
@@ -61,7 +61,8 @@ class IntervalMoments:
 
     profile: Profile
     over_forces: bool
-    """The normal coordinate is the reduced force [length^2], not the depth [length]."""
+    """True if the normal coordinate is the reduced force [length^2], false for the depth
+    [length]."""
 
     @property
     def normal(self) -> Function:
@@ -74,7 +75,7 @@ class IntervalMoments:
         return self.profile.depth if self.over_forces else self.profile.reduced_force
 
     def contact_coordinate(self, normal: Array) -> Array:
-        """Contact coordinate of a normal coordinate, which rounding may put beyond the domain."""
+        """Contact coordinate of a normal coordinate; rounding may put it just beyond the domain."""
         if self.profile.largest_loads is not None:
             normal = np.minimum(normal, self.profile.largest_loads[self.over_forces])
         return self.profile.coordinate_from_load(normal, of_force=self.over_forces)
@@ -135,7 +136,7 @@ class IntervalMoments:
     def mean_slope(self, low: Array, high: Array) -> Array:
         """Return the mean slope of the conjugate between two contact coordinates, low <= high.
 
-        It has no cancellation, however near they are: errors of their difference hardly matter.
+        It is free of cancellation at every distance, and insensitive to errors of the distance.
         """
         width = high - low
         steps = [step(self.profile, high, width, low) for step in (depth_step, force_step)]
@@ -147,13 +148,13 @@ class IntervalMoments:
 
     @cached_property
     def _between(self) -> Array:
-        """Moments from each break to each later one, shape (3, k, k)."""
+        """Moments from each break to each later break, shape (3, k, k)."""
         breaks = self.profile.coordinate_breaks
         normal, ends = self.normal(breaks), np.array([breaks[:-1], breaks[1:]])
         span, first = np.diff(normal), np.arange(breaks.size)
         panels = Moments(span, self.over_smooth(normal[:-1], span, ends, ends[0]))
-        # The moments add up to the step of the slope 2a or 1/(2a). They scale with the length in
-        # the normal coordinate, which has no digits on a flat.
+        # The moments add up to the step of the slope 2a or 1/(2a). Scaling ensures that, because on
+        # a flat the length in the normal coordinate is dominated by rounding error.
         radius = self.profile.contact_radius(breaks)
         whole = 2 * np.diff(radius)
         whole = whole / (4 * radius[1:] * radius[:-1]) if self.over_forces else whole
@@ -223,17 +224,18 @@ class IntervalMoments:
         Parameters
         ----------
         span, ends : see `over_wide`.
-        base : contact coordinates of the breaks below, zero for none, shape (m,); all is smooth in
-            the root of the distance from them.
+        base : contact coordinates of the breaks below, zero for none, shape (m,); the integrands
+            are smooth in the root of the distance from the break.
         """
         profile, (start, stop) = self.profile, ends
-        # The moments do not depend on the width itself, which may be below rounding error.
+        # The moments do not depend on the width in the contact coordinate, which may be below
+        # rounding error.
         width = np.maximum(stop - start, EPS * stop)
         share, weights, cumulative = cumulative_rule(NODES)
         high, bottom = np.sqrt(stop - base), np.sqrt(np.maximum(start - base, 0.0))
         climb = width / np.where(high > 0, high + bottom, inf)
-        # The distance from a singularity opposite to the break grows by one factor between equal
-        # shares, so that it is resolved; far from one the steps are equal.
+        # The steps resolve a singularity on the other side of the break: the distance from it grows
+        # by a constant factor. Far from a singularity the steps are equal.
         opposite = profile.opposite_singularity / np.sqrt(2 * np.where(base > 0, base, TINY))
         near = bottom + np.minimum(opposite, np.maximum(high, TINY) / EPS)
         growth = np.log1p(climb / near)
@@ -242,13 +244,13 @@ class IntervalMoments:
         past, moved = root * root, 2 * root * growth * (near + step)
         place = np.minimum(base + past, stop)
         slope = profile.depth_slope_beyond(place, base, past)
-        # Rounding puts nodes of narrow intervals on a break, beyond which g' may be infinite.
+        # Rounding may put nodes of narrow intervals on a break, next to which g' may be infinite.
         slope = np.where(slope < inf, slope, slope.min(axis=0))
         rise, measure = moved * slope, weights * moved
         if self.over_forces:
             twice = 2 * profile.contact_radius(place)
             rise, measure = rise * twice, measure / np.square(twice)
-        # Both scale with the width, which has fewer digits than the span.
+        # Both scale with the width, which is less accurate than the span.
         total = in_order(weights, rise)
         # The slope of g may underflow on a flat.
         total = np.where(total > 0, total, inf)
@@ -263,5 +265,6 @@ def interval_moments(profile: Profile, *, over_forces: bool) -> IntervalMoments:
     return (_of_table if has_many_breaks(profile) else IntervalMoments)(profile, over_forces)
 
 
-# The sums between breaks take as long as a short history. For 2000 points they have 1 MB.
+# The sums between breaks are cached: they take as long as a short history, and 1 MB for 2000
+# points.
 _of_table: Final = lru_cache(maxsize=16)(IntervalMoments)

@@ -12,19 +12,19 @@ from mdr_core.errors import DefectError
 from mdr_core.typing import Array
 
 Function = Callable[[Array], Array]
-# A function and the derivative of its logarithm by that of its argument.
+# A function and its logarithmic slope d log(function)/d log(argument).
 Sloped = Callable[[Array], tuple[Array, Array]]
 
 MAX_STEPS: Final = 200
-"""Bound on an iteration that narrows a bracket or moves a box, for searches of peaks as well.
+"""Maximum number of iterations that narrow a bracket or move a box, in searches of peaks as well.
 
 Newton's method takes 5 to 10 steps; with bisections between its steps, bounds 1e50 apart take 140.
 """
 # Newton's steps without bisections between them.
 _ALONE: Final = 20
-# Newton's step, and distance from the target, in log, after which one more step follows. The slope
-# may be that of the other side of a discontinuity, at which convergence is not quadratic, and just
-# above one a step is short long before the target is close.
+# Newton's step and distance from the target, both in log, below which one more step follows. Both
+# are needed: beside a slope discontinuity convergence is not quadratic, and just above one a step
+# is short long before the target is close.
 _LAST_BUT_ONE: Final = 1e-10
 
 
@@ -38,14 +38,15 @@ def invert(
 ) -> Array:
     """Return s with function(s) = target for an increasing function.
 
-    Newton's method in log(s) and log(function), which all profiles make nearly straight. [low,
-    high] brackets the root and shrinks by the signs of the residual; a step that leaves it is
-    replaced by its middle, and after many steps every second one: beside a break they can lead from
-    one side to the other and back.
+    Newton's method in log(s) and log(function), in which the functions of all profiles are nearly
+    linear. The bracket [low, high] shrinks by the sign of the residual. Its middle replaces a step
+    that leaves it and, after many steps, every second step, because steps beside a break can
+    alternate between its two sides.
 
     Parameters
     ----------
-    function : increasing and not negative, with its logarithmic slope, of arrays of one shape.
+    function : function of arrays, increasing and not negative, that also returns its logarithmic
+        slope.
     target : values >= 0; where it is zero, `low` is returned.
     start : first approximation, inside the bracket.
     low, high : bracket of the root; `high` may be infinite.
@@ -53,8 +54,8 @@ def invert(
 
     Returns
     -------
-    Array of the common shape; zero or infinite where the root leaves double precision, and NaN
-    where the function does.
+    Array of the common shape. It is zero or infinite where the root is not representable, and NaN
+    where a value of the function is not.
 
     Raises
     ------
@@ -72,12 +73,12 @@ def invert(
             known = (slope > 0) & (slope < inf)
             step, longest = residual / slope, _LAST_BUT_ONE
             if not every(known):
-                # Where the slope is not finite, the residual gives the direction alone, and
-                # converges linearly.
+                # Where the slope is not finite, the residual gives only the direction, and
+                # convergence is linear.
                 step = where(known, step, residual)
                 longest = where(known, _LAST_BUT_ONE, ROUNDING)
             size = abs(step)
-            # A short step alone may only mean that the function is steep here.
+            # A short step may merely mean that the function is steep here.
             short = (abs(residual) <= _LAST_BUT_ONE) & (size <= longest)
             converged = short & known & (size <= ROUNDING)
             proposed = s * np.exp(step)
@@ -92,12 +93,14 @@ def invert(
             ) | last
             moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))
             moved = where(moved < LARGEST, where(moved > 1 / LARGEST, moved, 0.0), inf)
-            # A converged root stays: it does not depend on how long the others take.
+            # A converged root does not change any more, so that it does not depend on the other
+            # roots.
             s = where(done, s, moved)
             done = done | settling | converged
             if every(done):
                 break
-            # Two spacings at either side of the middle are within its own rounding error.
+            # The rounding error of the middle itself is up to two spacings of doubles on either
+            # side.
             settling = last | (high - low <= where(high < inf, 2 * EPS * high, 0.0))
     root = where(positive, where(s < root_at_zero, root_at_zero, s), root_at_zero)
     if every(done):
@@ -108,5 +111,5 @@ def invert(
 
 
 def _middle(low: Array, high: Array) -> Array:
-    """Geometric middle of the bracket, within the range of doubles where it is open."""
+    """Geometric middle of the bracket, with the range of doubles in place of an open end."""
     return np.sqrt(np.maximum(low, TINY)) * np.sqrt(np.minimum(high, 1 / TINY))

@@ -78,7 +78,7 @@ class Material:
     poissons_ratios: tuple[float, ...] = ()
     """Poisson's ratios of the elastic bodies [1], empty where they are unknown."""
     profile_share: float | None = None
-    """Share of the first body, which has the profile, in 1/E* [1]; None where it is unknown."""
+    """Share in 1/E* of the first body, which has the profile [1]; None where it is unknown."""
     body_thickness: float | None = None
     """Thickness of the more compliant body on a rigid base [length]; None where it is not given."""
     shear_modulus: float | None = None
@@ -102,7 +102,7 @@ _Number = TypeVar("_Number", bound=Parameter)
 
 
 def normal_modulus(e_star: _Number | Material) -> _Number | float:
-    """Return E* [pressure], that of a material or the number itself; raise InputError if it is not.
+    """Return E* [pressure] of a material, or the number itself; raise InputError otherwise.
 
     Its value is not checked. Raises InputError for a layer, with which only `layer.solve` computes.
     """
@@ -114,9 +114,9 @@ def normal_modulus(e_star: _Number | Material) -> _Number | float:
 
 
 def shear_modulus(g_star: _Number | Material | None) -> _Number | float:
-    """Return G* [pressure], that of a material or the number itself; raise InputError if it is not.
+    """Return G* [pressure] of a material, or the number itself; raise InputError otherwise.
 
-    Its value is not checked.
+    The value is not checked.
     """
     value = g_star.g_star if isinstance(g_star, Material) else g_star
     _require_both_bodies("g_star", value)
@@ -126,9 +126,9 @@ def shear_modulus(g_star: _Number | Material | None) -> _Number | float:
 
 
 def twist_modulus(shear_modulus: _Number | Material | None) -> _Number | float:
-    """Return G of a twist [pressure], that of a material or the number itself.
+    """Return the shear modulus G of a twist [pressure], from a material or the number itself.
 
-    Its value is not checked. Raises InputError if there is none: G* does not determine it.
+    The value is not checked. Raises InputError if there is none: G* does not determine it.
     """
     value = shear_modulus.shear_modulus if isinstance(shear_modulus, Material) else shear_modulus
     _require_both_bodies("shear_modulus", value)
@@ -210,7 +210,7 @@ def from_bodies(
 
 
 def _dundurs_beta(bodies: Sequence[Body | Literal["rigid"]]) -> float:
-    """Dundurs' beta, signed as first body minus second. Source: dundurs."""
+    """Dundurs' beta, the part of the first body minus the part of the second. Source: dundurs."""
     mismatch, total = 0.0, 0.0
     for sign, body in zip((1, -1), bodies, strict=True):
         if isinstance(body, Body):

@@ -60,11 +60,11 @@ class NormalContact(validity.ContactResults):
     """Material on which the warnings depend; None where only E* is known."""
     quantities: ClassVar[tuple[str, ...]] = NORMAL_QUANTITIES
     g_star: ClassVar[None] = None
-    """No shear modulus, as there is no friction."""
+    """A contact without friction has no shear modulus."""
 
     @property
     def normal(self) -> Self:
-        """The contact itself: a contact with friction has its normal contact here."""
+        """The contact itself; in a contact with friction this attribute is its normal contact."""
         return self
 
     @cached_property
@@ -84,7 +84,7 @@ class NormalContact(validity.ContactResults):
 
     @cached_property
     def mean_pressure(self) -> Array:
-        """F_N / (pi a^2) [pressure]; its limit at zero load, infinite if sharper than a cone."""
+        """F_N / (pi a^2) [pressure]; at zero load its limit, which may be infinite."""
         area = np.pi * (self.contact_radius * self.contact_radius)
         if extremes(area)[0] > 0:
             return self.normal_force / area
@@ -95,7 +95,7 @@ class NormalContact(validity.ContactResults):
     def maximum_pressure(self) -> Array:
         """Largest pressure p(r) [pressure], zero without a load.
 
-        Infinite at a sharp tip, at a slope discontinuity and at the edge of a flat punch.
+        It is infinite at a sharp tip, at a slope discontinuity and at the edge of a flat punch.
         """
         profile, edge, loaded = self.profile, self.coordinate, self.loaded
         falls = profile.falls_from_axis(edge)
@@ -130,8 +130,8 @@ class NormalContact(validity.ContactResults):
     def data_error(self) -> Array | None:
         """Relative error of depth and force that the points of a table leave open [1].
 
-        An estimate, of the larger of both; None for profiles that are known. Under a prescribed
-        depth or force that one is exact, and F_N/(2E*) = a d - int_0^a g dx is stationary in a.
+        It estimates the larger of the two errors; None for profiles that are not tables. A
+        prescribed depth or force is exact, and F_N/(2E*) = a d - int_0^a g dx is stationary in a.
         Source: notes, §5.
         """
         if not isinstance(self.profile, Tabulated):
@@ -193,14 +193,15 @@ class NormalContact(validity.ContactResults):
         function, error = load_and_slope(profile, of_force=self.control == "normal_force"), rounding
         with np.errstate(divide="ignore", invalid="ignore"):
             if profile.flattens:
-                # Where g' falls to zero, the contact radius changes more than the load, and by the
-                # root of its rounding error at most.
+                # Where g' falls to zero, the relative change of the contact radius exceeds that of
+                # the load. It is at most the root of the rounding error of the load.
                 inside = self.coordinate * (1 - np.sqrt(rounding))
                 load, slope = function(inside)
                 condition = load / (inside * slope)
                 error = error * where(condition > 1, condition, 1.0)
             if profile.steepens:
-                # Just beyond a break the load may change more than the contact radius.
+                # Just beyond a break the load may change by more than the contact radius, in
+                # relative terms.
                 beyond = np.minimum(self.coordinate * (1 + ADJACENT), profile.domain)
                 load = function(self.coordinate)[0]
                 rise = function(beyond)[0] / load - 1
@@ -226,7 +227,7 @@ class NormalContact(validity.ContactResults):
         return self.warnings_with(self.error_estimate)
 
     def warnings_with(self, error: float, limit: float = ACCURACY) -> tuple[Notice, ...]:
-        """Return the warnings about shape and loads, and about an error above a limit."""
+        """Return the warnings about profile and loads, and about an error above a limit."""
         found = [*self.profile.notices, *validity.notices(self.findings)]
         if error > limit:
             found.append(inaccurate(error, limit))
@@ -234,7 +235,7 @@ class NormalContact(validity.ContactResults):
 
     @property
     def findings(self) -> list[validity.Finding]:
-        """Findings that depend on shape and loads alone."""
+        """Findings that depend only on the profile and the loads."""
         sharp = "mean_pressure is infinite at zero load: the tip is sharper than a cone"
         found = [
             validity.Finding("singular", np.isinf(self.mean_pressure), lambda: sharp),
@@ -294,7 +295,7 @@ def solve(
     """
     require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     material = e_star if isinstance(e_star, Material) else None
-    # A plain number is by far the most frequent case.
+    # A plain number is the most frequent input, and this test is fast.
     e_star = e_star if isinstance(e_star, float) else normal_modulus(e_star)
     loads = (indentation_depth, normal_force, contact_radius, maximum_pressure)
     names = (*CONTROLS, "maximum_pressure")
@@ -310,7 +311,7 @@ def solve(
 def shape_of_loads(
     contact: NormalContact, path: tuple[str, str], given: Array, *parameters: Parameter
 ) -> tuple[int, ...]:
-    """Return the shape of loads that are added to a normal contact, with their parameters.
+    """Return the shape of the loads and parameters that are added to a normal contact.
 
     Raises InputError at the path if they do not agree with the normal loads.
     """
@@ -323,7 +324,7 @@ def shape_of_loads(
 
 
 def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> Array:
-    """Contact coordinate of the edge under a load, with input and results checked."""
+    """Contact coordinate of the edge under a load, after a check of input and results."""
     require_positive(("material", "e_star"), e_star)
     with np.errstate(all="ignore"):
         if name == "contact_radius":
@@ -335,17 +336,18 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
             amount = load / e_star if of_force else load
             coordinate = profile.coordinate_from_load(amount, of_force=of_force)
     low, high = extremes(coordinate)
-    # Energies scale with coordinate^(2 n + 1), beside factors of the accepted magnitudes.
+    # Energies scale with coordinate^(2 n + 1); the other factors are bounded by the accepted
+    # magnitudes.
     reach = LARGEST ** (0.5 / (2 * profile.steepness + 1))
     if not 1 / reach < low <= high < reach:
-        # No other coordinate follows from a load that is negative or not finite.
+        # A load that is negative or not finite always has a coordinate outside these bounds.
         require_not_negative(("load", name), load)
         contact = NormalContact(profile, e_star, coordinate)
         with np.errstate(all="ignore"):
             depth, force, a = (getattr(contact, result) for result in CONTROLS)
             # An energy may underflow, but not overflow.
             results = coordinate, a, a * a, depth, force, np.maximum(depth * force, 1.0)
-        # A prescribed radius may be that of a flat, which is in contact without a load.
+        # A prescribed radius may equal that of a flat, which is in contact at zero load.
         loaded = coordinate > 0 if name == "contact_radius" else load > 0
         require_representable(("load", name), loaded, *results)
     return coordinate

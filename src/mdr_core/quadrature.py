@@ -1,6 +1,6 @@
 """Gauss-Legendre rules for integrands that are analytic in a strip about the real axis.
 
-The substitutions of `mdr_core.abel` turn every singular stress integral into one whose
+The substitutions of `mdr_core.abel` remove the singularities of every stress integral: the new
 integrand h(y) is analytic for |Im y| < pi/2 and grows no faster than exp(growth |Re y|). Pieces of
 length two then converge as 3.3^-2n.
 """
@@ -25,9 +25,9 @@ Integrand = Callable[[Array, Indices], Array]
 PIECE: Final = 2.0
 """Length of a piece in a strip of pi/2."""
 NODES: Final = 20
-"""Nodes of such a piece, which leave rounding error."""
+"""Number of nodes of such a piece, which reduces the error to rounding error."""
 STEEP: Final = 8.0
-"""Growth up to which a piece has that length."""
+"""Growth up to which a piece has `PIECE` as its length."""
 
 
 @lru_cache(maxsize=64)
@@ -48,10 +48,10 @@ def integrate(h: Integrand, length: Array, lower: Array, *, growth: float = STEE
     h : integrand.
     length : lengths, accurate also where the ends are close, shape (m,).
     lower : lower ends, shape (m,).
-    growth : power of exp|Re y| that h resembles over part of the interval.
+    growth : bound on the growth of h, as a power of exp|Re y|.
     """
     piece = PIECE / max(growth / STEEP, 1.0)
-    # A length that is not finite gives an integral that is not, in one piece.
+    # A length that is not finite takes one piece, and its integral is not finite either.
     counts = np.maximum(np.ceil(np.where(np.isfinite(length), length, 0.0) / piece), 1).astype(int)
     result: Array | None = None
     for count in np.flatnonzero(np.bincount(counts)).tolist():
@@ -66,7 +66,7 @@ def integrate(h: Integrand, length: Array, lower: Array, *, growth: float = STEE
 def _apply(
     h: Integrand, rule: tuple[Array, Array], lower: Array, length: Array, index: Indices
 ) -> Array:
-    """Rule on [0, 1] applied to [lower, lower + length], in blocks that stay in the cache."""
+    """Apply the rule on [0, 1] to [lower, lower + length], in blocks that fit in the cache."""
     nodes, weights = rule
     if len(several := in_blocks(length.size, nodes.size)) > 1:
         parts = [_apply(h, rule, lower[part], length[part], index[part]) for part in several]
@@ -76,7 +76,7 @@ def _apply(
 
 @lru_cache(maxsize=256)
 def composite_rule(points: int, count: int = 1) -> tuple[Array, Array]:
-    """Return nodes and weights on [0, 1], cut into `count` equal pieces."""
+    """Return nodes and weights on [0, 1], divided into `count` equal pieces."""
     return piecewise_rule(points, np.linspace(0.0, 1.0, count + 1))
 
 
@@ -103,5 +103,5 @@ def piecewise_rule(points: int, ends: Array) -> tuple[Array, Array]:
 
 
 def reach_of_power(exponent: float) -> float:
-    """Return log(x0/x) at which (x/x0)^exponent is negligible, or the range of doubles ends."""
+    """Return log(x0/x) at which (x/x0)^exponent is negligible, or at which doubles end."""
     return min(-log(EPS) / exponent, LOG_RANGE) if exponent > 0 else LOG_RANGE

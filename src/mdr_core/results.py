@@ -4,8 +4,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-# Digits that a readable form shows, and those of an error: more depend on the processor, or mean
-# nothing. `to_dict` has them all.
+# Number of digits that the readable form shows, of a result and of an error. Further digits depend
+# on the processor or are insignificant. `to_dict` returns all digits.
 _DIGITS, _OF_AN_ERROR = 7, 2
 
 
@@ -16,15 +16,15 @@ class Results:
     about: ClassVar[tuple[str, ...]] = ("method", "error_estimate", "model_error", "warnings")
 
     def computed(self) -> dict[str, Any]:
-        """Return the quantities by name, as they were computed."""
+        """Return the quantities by name, in the types in which they are computed."""
         return {name: getattr(self, name) for name in self.quantities}
 
     def values(self) -> dict[str, Any]:
-        """Return the quantities by name, a single number without a dimension."""
+        """Return the quantities by name, as single numbers where they have no dimension."""
         return {name: _plain(value) for name, value in self.computed().items()}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return every result by name, as the HTTP service names it.
+        """Return every result by name, with the names of the HTTP service.
 
         Returns
         -------
@@ -59,7 +59,7 @@ def _short(value: Any, digits: int) -> str:
     if isinstance(value, float):
         return f"{value:.{digits}g}"
     if isinstance(value, np.ndarray):
-        # One line, with the first and the last values of a long array.
+        # Format a value on one line, a long array by its first and last values.
         return np.array2string(
             value,
             max_line_width=10_000,

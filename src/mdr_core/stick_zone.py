@@ -12,7 +12,7 @@ from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes, first_index, require_finite
 
-# Quantities of the normal contact that limit those of the tangential one.
+# Quantities of the normal contact that limit the tangential loads.
 CONTROLS: Final = {
     "tangential_force": "normal_force",
     "tangential_displacement": "indentation_depth",
@@ -47,7 +47,7 @@ def solve(
 
 
 def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
-    """Direction and magnitude of the load, which is checked; a single sign 1 stands for all."""
+    """Direction and magnitude of the load, which is validated; a single sign 1 means all cases."""
     require_finite(("tangential", name), given)
     if extremes(given)[0] >= 0 or name == "stick_radius":
         return _POSITIVE, given
@@ -57,7 +57,7 @@ def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
 def _by_load(
     name: str, profile: Profile, coordinate: Array, ratio: Parameter, normal: Array, given: Array
 ) -> StickZone:
-    """Results of `solve`; full slip at the limit and beyond, which a force cannot exceed.
+    """Results of `solve`, with full slip from the limit on; a force cannot exceed the limit.
 
     The limit is the ratio times the `normal` load or depth.
     """
@@ -103,6 +103,6 @@ def _by_radius(contact: NormalContact, radius: Array) -> StickZone:
     if contact.control == "contact_radius":
         width = a - c
     else:
-        # The coordinate of an edge that follows from a load is accurate, its radius may not be.
+        # The contact coordinate of a computed edge is accurate; its radius may not be.
         width = where(c < a, np.maximum(contact.coordinate - edge, 0.0), 0.0)
     return edge, width, _POSITIVE, all_slips, _NO_EXCESS

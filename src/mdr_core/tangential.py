@@ -21,10 +21,10 @@ from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes, only_one, require_positive, require_type
 
-# Relative rounding error of the displacement mu (E*/G*) d at full slip, of three products.
+# Relative rounding error of the full-slip displacement mu (E*/G*) d, which has three products.
 _LIMIT_ERROR: Final = 1.5 * EPS
 
-# Relative error of a stick radius from which on it is computed, not linearised.
+# Above this relative error of a stick radius, its effect is computed instead of linearised.
 _LINEAR: Final = 0.1
 
 # Step of depth or force between two contact coordinates.
@@ -44,13 +44,13 @@ class TangentialContact(validity.ContactResults):
     stick_coordinate: Array
     """Stick radius in the contact coordinate of the profile; undefined in full slip."""
     width: Array
-    """Distance of the stick edge from the contact edge in that coordinate, without cancellation."""
+    """Distance of the stick edge from the contact edge in that coordinate, free of cancellation."""
     sign: Array
-    """Direction of the load; a single 1 if all are positive."""
+    """Direction of the load; a single 1 if all loads are positive."""
     full_slip: Flags
-    """True in full slip; a single False for no case."""
+    """True in full slip; a single False if no case is in full slip."""
     excess: Array
-    """Displacement beyond that of full slip [length]; a single 0 for no case."""
+    """Displacement beyond the onset of full slip [length]; a single 0 if there is none."""
     control: str = "tangential_displacement"
     """Name of the prescribed tangential load."""
     quantities: ClassVar[tuple[str, ...]] = (
@@ -78,7 +78,7 @@ class TangentialContact(validity.ContactResults):
 
     @cached_property
     def displacement_ratio(self) -> Parameter:
-        """mu E*/G* [1], tangential displacement over difference of depths.
+        """mu E*/G* [1], ratio of the tangential displacement to the difference of depths.
 
         Source: mdr-5, Eq. (5.20).
         """
@@ -101,10 +101,10 @@ class TangentialContact(validity.ContactResults):
         return self._signed(partial)
 
     def _over_annulus(self, step: _Step, divisor: Parameter) -> Array:
-        """Step of depth or force over the annulus, times mu E* over a divisor."""
+        """Step of depth or force over the annulus, times mu E*/divisor."""
         ends = self._coordinate, self.width, self.stick_coordinate
         rise = step(self.normal.profile, *ends)
-        # mu and G* are often single numbers beside an array E*.
+        # mu and G* are often single numbers while E* is an array.
         return self.friction_coefficient / divisor * self.normal.e_star * rise
 
     def _signed(self, size: Array) -> Array:
@@ -128,7 +128,7 @@ class TangentialContact(validity.ContactResults):
         profile = self.normal.profile
         c = profile.contact_radius(self.stick_coordinate)
         if c is not self.stick_coordinate:
-            # By rounding error c may exceed a. Without slip both are bit-identical.
+            # Rounding errors may lead to c > a. Without slip c and a are bit-identical.
             a = self.normal.contact_radius
             c = where(self.width > 0, np.minimum(c, a), a)
         return where(self.full_slip, 0.0, c) if some(self.full_slip) else c
@@ -142,7 +142,8 @@ class TangentialContact(validity.ContactResults):
     def maximum_shear_stress(self) -> Array:
         """Largest |tau(r)| [pressure], zero without a tangential load.
 
-        Infinite where the slip annulus, both ends included, contains a radius of infinite pressure.
+        It is infinite if the slip annulus, including both ends, contains a radius of infinite
+        pressure.
         """
         loaded = self.tangential_force != 0
         stress = largest_stress(self.normal.profile, self._coordinate, loaded, self._slipping)
@@ -180,7 +181,7 @@ class TangentialContact(validity.ContactResults):
 
     @cached_property
     def _width_rounding(self) -> Array:
-        """Relative error of a - c by the rounding of the edges [1]."""
+        """Relative error of a - c due to the rounding of the edges [1]."""
         normal, profile = self.normal, self.normal.profile
         error = conditioning.of_edge_slope(normal)
         if self.control == "stick_radius":
@@ -196,9 +197,9 @@ class TangentialContact(validity.ContactResults):
 
     @cached_property
     def _limit_rounding(self) -> Parameter:
-        """Relative error of results by the rounding of the load at full slip [1].
+        """Relative error of results due to the rounding of the load at full slip [1].
 
-        A load that is that of full slip in double precision is in full slip.
+        A load that equals the full-slip load in double precision is in full slip.
         """
         if self.control == "stick_radius":
             return 0.0
@@ -206,7 +207,7 @@ class TangentialContact(validity.ContactResults):
 
     @property
     def step_error(self) -> Array:
-        """Relative error of each case without that of the load at full slip [1]."""
+        """Relative error of each case, apart from the rounding of the load at full slip [1]."""
         return conditioning.OF_SUMS * self.normal.error_estimates + self._width_rounding
 
     @property
@@ -230,12 +231,12 @@ class TangentialContact(validity.ContactResults):
 
     @property
     def limit_error(self) -> Parameter:
-        """Relative error of the load at full slip, and of the distance from it over that load."""
+        """Errors of the full-slip load and of the distance from it, relative to that load [1]."""
         if self.normal.control != CONTROLS[self.control]:
             return self.normal.error_estimates
         if self.control == "tangential_displacement":
             return _LIMIT_ERROR
-        # One product: half a unit in its last place.
+        # The product mu F_N is rounded by half a unit in its last place.
         limit = self.limiting_force
         return np.spacing(limit) / where(limit > 0, 2 * limit, 1.0)
 
@@ -251,14 +252,14 @@ class TangentialContact(validity.ContactResults):
 
     @property
     def _load_and_limit(self) -> tuple[Array, Array]:
-        """Magnitude of the prescribed load, and that of full slip."""
+        """Magnitude of the prescribed load and of the full-slip load."""
         if self.control == "tangential_force":
             return np.abs(self.tangential_force), self.limiting_force
         return np.abs(self.tangential_displacement), self._full_slip_displacement
 
     @property
     def _load_condition(self) -> Parameter:
-        """Largest relative condition number of each load's results with respect to it [1]."""
+        """Largest relative condition number of the results with respect to each load [1]."""
         force_prescribed, (size, limit) = self.control == "tangential_force", self._load_and_limit
         profile, partial = self.normal.profile, (limit > 0) & ~self.full_slip
         ratio = where(partial, size / where(limit > 0, limit, 1.0), 0.0)
@@ -268,13 +269,13 @@ class TangentialContact(validity.ContactResults):
         )
         if force_prescribed or not some(self.excess > 0):
             return condition
-        # The dissipated energy by the displacement beyond full slip.
+        # The displacement beyond full slip adds to the condition number of the dissipated energy.
         energy = where(self.dissipated_energy > 0, self.dissipated_energy, 1.0)
         return condition + where(self.excess > 0, self.limiting_force * size / energy, 0.0)
 
     @property
     def slips_from(self) -> Array:
-        """Least radius with slip [length]; infinite without."""
+        """Least radius with slip [length]; infinite without slip."""
         return where(self.full_slip | (self.slip_width > 0), self.stick_radius, np.inf)
 
     @property
@@ -292,7 +293,7 @@ def solve(
     tangential_displacement: ArrayLike | None = None,
     stick_radius: ArrayLike | None = None,
 ) -> TangentialContact:
-    """Return the partial slip of a normal contact under one tangential load, applied once.
+    """Return the partial slip of a normal contact under one monotonic tangential load.
 
     F_x = mu [F_N(a) - F_N(c)] and u_x = mu (E*/G*) [d(a) - d(c)] for every profile. Slip spreads
     inwards from the edge as the load grows. A flat punch sticks completely up to full slip, and
@@ -310,8 +311,8 @@ def solve(
 
     Raises
     ------
-    InputError : |F_x| > mu F_N, without equilibrium; a stick radius outside the contact or inside
-        the flat; not exactly one load; parameters that are not positive.
+    InputError : |F_x| > mu F_N, where there is no equilibrium; a stick radius outside the contact
+        or inside the flat; not exactly one load; parameters that are not positive.
 
     Examples
     --------
@@ -346,8 +347,8 @@ def solve(
 def slip_moment(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:
     """Return int_c^a (g(a) - g(x)) (g(x) - g(c)) dx [length^3].
 
-    It is D^2/4 int 2t(1-t) 2 dx, where D = g(a) - g(c), and t from 0 to 1 is the part of it up to
-    x: a Bernstein moment of the springs.
+    With D = g(a) - g(c) and t = (g(x) - g(c))/D it is (D^2/4) int 2t(1-t) 2 dx, a Bernstein moment
+    of the springs.
 
     Source: notes, §6. Parameters: see `depth_step`.
     """

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
-# Of real or complex numbers.
+# Array of real or complex numbers.
 Numbers: TypeAlias = NDArray[Any]
 Indices: TypeAlias = NDArray[np.intp]
-# Chosen elements of an array: any, or a contiguous range, which is a view and not a copy.
+# Selected elements of an array: an index array, or a slice, which gives a view and not a copy.
 Chosen: TypeAlias = Indices | slice
 Flags: TypeAlias = NDArray[np.bool_]
 # Parameter of a profile: one number, or an array over the cases of a sweep.

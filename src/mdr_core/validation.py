@@ -31,7 +31,7 @@ TIGHTEST, LOOSEST = 1e-13, 1e-3
 LEAST_CHANGE, MOST_CHANGE = 1e-4, 0.1
 """Bounds of `holds_within`: from the largest on, its limits, of first order, are off by a third."""
 UNRESOLVED: Final = 0.25
-"""Relative error above which there is no answer."""
+"""Relative error above which a result is rejected."""
 
 
 def require_type(name: str, value: object, types: Any, needed: str) -> None:
@@ -39,10 +39,10 @@ def require_type(name: str, value: object, types: Any, needed: str) -> None:
 
     Parameters
     ----------
-    name : that of the argument.
-    value : the argument; one with a reason why it is `unusable` here is rejected as well.
+    name : name of the argument.
+    value : the argument; it is also rejected if it has an attribute `unusable` with a reason.
     types : a type, or several.
-    needed : words for these types in the message.
+    needed : description of these types in the message.
     """
     if reason := getattr(value, "unusable", ""):
         raise InputError((name,), reason)
@@ -58,7 +58,7 @@ def as_numbers(path: tuple[str | int, ...], values: float | ArrayLike) -> Array:
     else:
         masked = np.ma.getmaskarray(values) if isinstance(values, np.ma.MaskedArray) else None
         if masked is not None and masked.any():
-            # As an array it would hold the number beneath the mask.
+            # Conversion to an array would expose the number under the mask.
             detail = "is masked: leave it out, or give a number"
             raise InputError((*path, *first_index(masked)), detail)
         with suppress(TypeError, ValueError, OverflowError):
@@ -103,7 +103,7 @@ def first_index(bad: Flags) -> tuple[int, ...]:
 def only_one(
     path: tuple[str | int, ...], given: Mapping[str, ArrayLike | None]
 ) -> tuple[str, Array]:
-    """Return name and values of the one quantity that is given.
+    """Return the name and the values of the only quantity that is given.
 
     Raises InputError at the path for none or several of them, or without values.
     """
@@ -171,10 +171,10 @@ def require_finite(path: tuple[str | int, ...], values: Array) -> None:
 
 
 def as_curve(places: str, **given: ArrayLike) -> tuple[Array, Array]:
-    """Return two lists of a measured curve by their names, as arrays of one length.
+    """Return the two named lists of a measured curve as arrays of equal length.
 
-    Raises InputError for numbers that are not finite, and for lists of different lengths, in which
-    `places` stands for the values of the first.
+    Raises InputError for numbers that are not finite, and for lists of different lengths; `places`
+    is the word for the first list in the message.
     """
     first, second = (np.atleast_1d(as_numbers((name,), given[name])) for name in given)
     for name, values in zip(given, (first, second), strict=True):
@@ -186,7 +186,7 @@ def as_curve(places: str, **given: ArrayLike) -> tuple[Array, Array]:
 
 
 def require_representable(path: tuple[str | int, ...], used: Flags, *results: Array) -> None:
-    """Raise InputError at the first load whose results leave the range of double precision.
+    """Raise InputError at the first load whose results are not representable as doubles.
 
     `path` is that of the load, `used` are the loads that are not zero, under which the results are
     positive.
@@ -228,7 +228,7 @@ def require_poissons_ratio(path: tuple[str | int, ...], value: float) -> None:
 
 
 def require_tolerance(rtol: float, tightest: float = TIGHTEST) -> None:
-    """Raise InputError unless the relative accuracy lies from the tightest one to 1e-3."""
+    """Raise InputError unless `rtol` is between the tightest accuracy and 1e-3."""
     if not tightest <= single(("rtol",), rtol) <= LOOSEST:
         raise InputError(("rtol",), f"must lie from {tightest} to {LOOSEST}")
 

@@ -1,1 +1,1 @@
-"""HTTP service for :mod:`mdr_core`, which holds all physics."""
+"""HTTP service for :mod:`mdr_core`, which contains all physics."""

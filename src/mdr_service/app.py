@@ -20,13 +20,15 @@ from mdr_service.settings import SETTINGS
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     if supervisor := multiprocessing.parent_process():
-        # A terminal signals all processes; the supervisor then ends the workers.
+        # A terminal that closes sends SIGHUP to all processes. Workers ignore it, because the
+        # supervisor ends them.
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
         threading.Thread(target=_end_after, args=(supervisor.join,), daemon=True).start()
     async with app.state.compute.started(health.self_test):
-        # It takes a quarter of a second, which no request waits for here.
+        # Writing the document takes a quarter of a second; at the start no request waits for it.
         explorer.openapi_document(app)
-        # A collection of garbage would visit all modules, and hold the event loop for 80 ms.
+        # Garbage collection would visit the objects of all modules, and block the event loop for 80
+        # ms.
         gc.freeze()
         yield
 
@@ -39,7 +41,7 @@ def _end_after(wait: Callable[[], None]) -> None:
 def create_app() -> FastAPI:
     """Return the application."""
     app = FastAPI(
-        # Routes of an included router would take some microseconds longer per request.
+        # Routes of an included router take a few microseconds longer per request.
         routes=[route for part in (queries, operations, explorer) for route in part.router.routes],
         title="MDR",
         version=__version__,
@@ -47,16 +49,17 @@ def create_app() -> FastAPI:
         openapi_tags=openapi.TAGS,
         license_info={"name": "MIT", "identifier": "MIT"},
         contact={"name": "The MDR authors"},
-        # Relative to the document, so that it holds below a root path as well.
+        # The URL is relative to the document, so that it is valid below a root path as well.
         servers=[{"url": ".", "description": "This service"}],
         separate_input_output_schemas=False,
-        # The framework's own pages load their scripts from other hosts, and its document is written
-        # for each request.
+        # The framework's own pages load scripts from other hosts, and the framework writes its
+        # document for each request.
         openapi_url=None,
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
-        # It would search for a collector on every request; `/metrics` covers more.
+        # Instrumentation of the framework would search for a collector on every request; `/metrics`
+        # covers more.
         telemetry={"tracing": False, "metrics": False, "logs": False},
         lifespan=_lifespan,
     )

@@ -41,7 +41,7 @@ class BatchItem(Strict):
 def _or_error(
     value: object, validate: Callable[[object], BatchItem]
 ) -> BatchItem | ValidationError:
-    """Return the entry of a batch, or the reason why it is none: the others have responses."""
+    """Return the entry of a batch, or the reason why it is invalid, for its own response."""
     try:
         return validate(value)
     except ValidationError as error:
@@ -57,12 +57,12 @@ class BatchQuery(Strict):
 
     @property
     def entries(self) -> list[BatchItem | ValidationError]:
-        """The queries; an invalid entry is the reason why it is invalid."""
+        """The queries; an invalid entry is replaced by the reason why it is invalid."""
         return [*self.queries]
 
 
 class BatchItemAnswer(Answer):
-    """Response to one query: its answer or its problem."""
+    """Response to one query: its result or its problem."""
 
     status: int = Field(description="HTTP status that the query has at its own endpoint.")
     answer: dict[str, Any] = left_out("Response of the query at its own endpoint.")
@@ -72,6 +72,6 @@ class BatchItemAnswer(Answer):
 
 
 class BatchAnswer(Answer):
-    """Responses to the queries, in their order."""
+    """Responses to the queries, in the order of the request."""
 
     answers: list[BatchItemAnswer] = Field(description="One entry for each query.")

@@ -2,10 +2,10 @@
 
 Computations that are longer than a round trip run in compute processes: a thread would hold the
 global interpreter lock (GIL), and could not be terminated. They wait for up to `queue_seconds`,
-then run for up to `budget_seconds`; a single limit would terminate computations half-way that had
-mainly waited. Computations of one client wait in their order; of several clients, the one that
-computes least is next, and one that computes in several processes gives back the last while another
-waits.
+then run for up to `budget_seconds`; a single limit would terminate computations that have mainly
+waited. Computations of one client wait in their order. Among several clients the next is the one
+that occupies the fewest processes. A client that occupies several processes gives up the last of
+them while another client waits.
 
 Calls and outcomes are pickled, and preceded by their length.
 """
@@ -50,11 +50,11 @@ _Result = TypeVar("_Result")
 
 # A start takes a second or two, most of it for SciPy.
 _START_SECONDS: Final = 30.0
-# Part of `queue_seconds` for which a computation waits before it displaces another.
+# Part of `queue_seconds` for which a computation waits before it displaces another one.
 _FAIR_SHARE: Final = 0.25
 # Pause after a failure: short enough to recover soon, long enough not to use up a core.
 _PAUSE: Final = 1.0
-# Before each message: its length.
+# Each message is preceded by its length.
 _HEAD: Final = struct.Struct("Q")
 # With fewer cores than processes, the event loop has priority.
 _NICENESS: Final = 5
@@ -63,7 +63,7 @@ _logger: Final = logging.getLogger(__name__)
 
 
 class ComputeProcess:
-    """Handle of a compute process, which is killed if a call does not end as it should."""
+    """Handle of a compute process, which is killed if a call does not end properly."""
 
     def __init__(self, process: subprocess.Process) -> None:
         self._process = process
@@ -71,12 +71,13 @@ class ComputeProcess:
         self._outcomes = cast("StreamReader", process.stdout)
         self.usable = True
         self.reason_if_ended = "start"
-        """Reason for which it will have ended if nothing else happens."""
+        """Reason to report if the process ends, unless another one is known."""
 
     @classmethod
     async def start(cls) -> Self:
         """Start a process; raise OSError if the system cannot."""
-        # More BLAS threads than cores slow each other down. Modules are found as in the server.
+        # BLAS threads slow each other down if there are more threads than cores. The process finds
+        # modules on the search path of the server.
         environment = {"OPENBLAS_NUM_THREADS": "1", **os.environ}
         environment["PYTHONPATH"] = os.pathsep.join(sys.path)
         command = (sys.executable, "-P", "-c", f"from {__name__} import serve; serve()")
@@ -86,8 +87,8 @@ class ComputeProcess:
     async def call(self, seconds: float, function: Callable[..., object], *arguments: Any) -> Any:
         """Return the result of a function of a module, or the exception that it raised.
 
-        Any exception raised here is about the process, which is killed: TimeoutError if the
-        function takes longer than `seconds`, others if the process ends.
+        An exception raised here concerns the process, which is killed: TimeoutError if the function
+        takes longer than `seconds`, others if the process ends.
         """
         message = pickle.dumps((function, arguments))
         try:
@@ -95,7 +96,7 @@ class ComputeProcess:
                 self._calls.writelines((_HEAD.pack(len(message)), message))
                 await self._calls.drain()
                 (length,) = _HEAD.unpack(await self._outcomes.readexactly(_HEAD.size))
-                # The pipe's other end is the server's own code.
+                # Unpickling is safe: the other end of the pipe is the server's own code.
                 return pickle.loads(await self._outcomes.readexactly(length))  # noqa: S301
         except BaseException:
             self.kill()
@@ -119,11 +120,11 @@ class _Job:
     client: str
     """Address of the client."""
     since: float = field(default_factory=monotonic)
-    """Time at which it began to wait."""
+    """Time at which the computation began to wait."""
 
     @property
     def age(self) -> float:
-        """Time for which it has waited."""
+        """Time for which the computation has waited."""
         return monotonic() - self.since
 
 
@@ -134,18 +135,18 @@ class ComputePool:
         self._settings = settings
         self._processes: set[ComputeProcess] = set()
         self._idle: list[ComputeProcess] = []
-        # Each computation with the process in which it will run, or runs; in the order of arrival.
+        # Each computation with the process in which it runs or will run, in the order of arrival.
         self._waiting: dict[_Job, Future[ComputeProcess]] = {}
         self._running: dict[_Job, ComputeProcess] = {}
         self._supervised = False
-        # Set once every process has started, or one has failed to or has ended.
+        # Set once every process has started, or one has ended or could not start.
         self._settled = Event()
 
     @asynccontextmanager
     async def started(self, self_test: Callable[[], object]) -> AsyncIterator[None]:
         """Start the processes, and replace those that end.
 
-        A process first runs `self_test`, a function of a module, and is not used if that fails.
+        A process first runs `self_test`, a function of a module, and is not used if the test fails.
         """
         observability.QUEUE.set_function(lambda: len(self._waiting))
         observability.PROCESSES.set_function(lambda: sum(each.usable for each in self._processes))
@@ -173,7 +174,7 @@ class ComputePool:
                 await sleep(_PAUSE)
 
     async def _lend_process(self, self_test: Callable[[], object]) -> None:
-        """Start a process, lend it to computations, and count its end, whatever the reason."""
+        """Start a process, assign it to computations, and count its end, for any reason."""
         process = await ComputeProcess.start()
         ended = create_task(process.wait())
         try:
@@ -197,7 +198,7 @@ class ComputePool:
                 _logger.warning("compute process ended with status %d: %s", status, reason)
 
     def _offer(self, process: ComputeProcess) -> None:
-        """Give an idle process to the client that computes least, for its first computation."""
+        """Give an idle process to the first computation of the client that occupies the fewest."""
         if not process.usable:
             return
         if not self._waiting:
@@ -214,8 +215,8 @@ class ComputePool:
 
         `seconds` limits the time of the computation, by default to `budget_seconds`.
 
-        Raises ServiceError if the queue is full, the wait or the computation takes too long, or
-        the process is lost; besides all that the function raises.
+        Raises ServiceError if the queue is full, the wait or the computation takes too long, or the
+        process is lost; and any exception that the function raises.
         """
         record = observability.CURRENT.get()
         job = _Job(record.client if record else "")
@@ -233,7 +234,7 @@ class ComputePool:
             detail = f"the time limit is {limit:g} s"
             raise ServiceError(problems.TIME_EXCEEDED, detail) from None
         except Exception as error:
-            # Whatever the exception is, the process is lost, and nothing else.
+            # Every exception here means that the process is lost, and affects nothing else.
             process.kill()
             if process.reason_if_ended == "displaced":
                 reason = "terminated: another client waited, and this one computed more"
@@ -252,7 +253,7 @@ class ComputePool:
             return self._idle.pop()
         turn = self._waiting[job] = Future[ComputeProcess]()
         if len(self._waiting) > self._settings.queue_length:
-            # The client with the most computations in the queue gives up its last.
+            # The client with the most computations in the queue gives up its last one.
             counts = Counter(each.client for each in self._waiting)
             last = max(self._waiting, key=lambda each: (counts[each.client], each.since))
             self._waiting.pop(last).set_exception(self._busy("the queue is full"))
@@ -283,7 +284,7 @@ class ComputePool:
             self._running[last].kill()
 
     def _busy(self, reason: str) -> ServiceError:
-        """Return the problem of a rejected computation, to be repeated after the longest wait."""
+        """Return the problem of a rejected computation, to be retried after the longest wait."""
         after = max([1, *(ceil(job.age) for job in self._waiting)])
         return ServiceError(problems.BUSY, f"{reason}; try again in {after} s", retry_after=after)
 
@@ -300,8 +301,8 @@ def _lost(detail: str) -> ServiceError:
 
 
 def serve() -> None:
-    """Compute until the server ends, or closes the pipe: nobody then waits for a result."""
-    # A signal to the process group is for the server, which first completes its requests.
+    """Compute until the server ends or closes the pipe; then no client waits for a result."""
+    # A signal to the process group is left to the server, which first completes its requests.
     for each in (signal.SIGHUP, signal.SIGINT, signal.SIGTERM):
         signal.signal(each, signal.SIG_IGN)
     os.nice(_NICENESS)
@@ -318,9 +319,9 @@ def serve() -> None:
 
 
 def _attempt(text: bytes) -> Any:
-    """Return the result of a call, or an exception that pickles."""
+    """Return the result of a call, or an exception that can be pickled."""
     try:
-        # The pipe's other end is the server's own code.
+        # Unpickling is safe: the other end of the pipe is the server's own code.
         function, arguments = pickle.loads(text)  # noqa: S301
         return function(*arguments)
     except problems.FAILURES as error:
@@ -330,7 +331,7 @@ def _attempt(text: bytes) -> Any:
 
 
 def _receive(calls: SimpleQueue[bytes]) -> None:
-    """Receive calls; end the process, whatever it computes, with the pipe."""
+    """Receive calls; end the process, even during a computation, when the pipe closes."""
     pipe = sys.stdin.buffer
     while head := pipe.read(_HEAD.size):
         calls.put(pipe.read(*_HEAD.unpack(head)))

@@ -20,7 +20,7 @@ UNITS: Final = (
 
 
 class ResponseParameters(BaseModel):
-    """Parameters of a URL that tell the form of the response."""
+    """Parameters of a URL that determine the format of the response."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -34,7 +34,7 @@ class ResponseParameters(BaseModel):
 
 _SIZE: Final = re.compile(r"(\d{2,3})x(\d{2,3})", re.ASCII)
 _SMALLEST, _LARGEST = 50, 400
-# Characters that every font has, and none that starts a formula.
+# These characters exist in every font, and none of them starts a formula in Matplotlib.
 _UNIT: Final = re.compile(r"[A-Za-z0-9µμ°²³·/*^. -]{1,12}")
 _THREE_NAMES: Final = (
     "must be three names, of length, force and pressure, such as mm,N,MPa: of at most 12 letters, "
@@ -44,9 +44,10 @@ _WEIGHT: Final = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)", re.ASCII)
 
 
 def media_type(name: str | None, accept: str, offered: Sequence[str] = tuple(FORMATS)) -> str:
-    """Return the media type of a format; without its name, the header ``Accept`` selects one.
+    """Return the media type of a named format; without a name the header ``Accept`` selects it.
 
-    Of equals it selects the first of the offered formats. Raises ServiceError if none is accepted.
+    Among formats of equal weight the header selects the first that is offered. Raises ServiceError
+    if none is accepted.
     """
     types = [FORMATS[each] for each in offered]
     if name is not None:

@@ -23,15 +23,16 @@ from mdr_service.serializers.picture import AS_USUAL, Appearance
 from mdr_service.settings import SETTINGS
 
 _logger: Final = logging.getLogger(__name__)
-# Most numbers in the response to a query that runs on the event loop, about ten for each load.
-# All count for each term of a series: fields at a thousand radii, which take a millisecond or two.
+# Maximum number of values in the response to a query that runs on the event loop; each load has
+# about ten, and for a series the number is multiplied by its terms. Fields at a thousand radii just
+# meet the limit, and take a millisecond or two.
 _MAX_NUMBERS_ON_LOOP, _PER_LOAD = 1_100, 10
 
 
 def is_short(name: str, query: Query) -> bool:
-    """Return True if a query runs on the event loop, for which all other requests wait.
+    """Return True if a query runs on the event loop, where it delays all other requests.
 
-    Any other runs in a compute process, for at most `budget_seconds`.
+    Any other query runs in a compute process, for at most `budget_seconds`.
     """
     is_slow = (
         QUERIES[name].is_long
@@ -58,7 +59,7 @@ def respond(
     Parameters
     ----------
     name : name of the query, a key of `QUERIES`, or ``batch``.
-    query : the request, or its text or the parameters that stand for it, which are first parsed.
+    query : the request, or its text or parameters, which are parsed first.
     media_type : media type of the content.
     appearance : size and units of a picture.
     members : members of the result to return, by default all; a picture shows all.
@@ -75,7 +76,7 @@ def respond(
     if isinstance(query, BatchQuery):
         _require_few_numbers(query)
         return b'{"answers":[' + b",".join(map(_entry, query.entries)) + b"]}"
-    # Complete results are checked for overflow.
+    # The members are selected last, because complete results are checked for overflow.
     with np.errstate(all="ignore"):
         kind = QUERIES[name]
         source = kind.solve(query)
@@ -92,12 +93,12 @@ def respond(
 
 
 def _require_few_numbers(batch: BatchQuery) -> None:
-    """Raise ServiceError if the responses would hold more numbers than a single one may."""
+    """Raise ServiceError if the responses together exceed the limit of numbers in one response."""
     numbers, most = 0, SETTINGS.max_numbers
     for index, item in enumerate(batch.entries):
         if isinstance(item, BatchItem) and isinstance(item.query, Query):
             own = max(item.query.loads, item.query.numbers)
-            # A query that is too large alone is rejected alone.
+            # A query that exceeds the limit by itself is rejected by itself.
             numbers += own if own <= most else 0
         if numbers > most:
             detail = f"the responses must not hold more than {most} numbers in total"

@@ -16,9 +16,9 @@ _QUERY: Final = {
     "material": {"e_star": 0.75},
     "load": {"indentation_depth": 1.0},
 }
-# A self-test takes a millisecond: a process that gets no core for this time is of no use.
+# A self-test takes a millisecond. A process that cannot finish it within this time is useless.
 SECONDS: Final = 2.0
-# F_N = (4/3) E* R^(1/2) d^(3/2), a = (R d)^(1/2): Hertz.
+# Hertz: F_N = (4/3) E* R^(1/2) d^(3/2), a = (R d)^(1/2).
 _EXPECTED: Final = {"normal_force": 1.0, "contact_radius": 1.0}
 
 

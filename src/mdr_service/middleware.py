@@ -27,7 +27,7 @@ from mdr_service.protocol import LINGER_SECONDS
 from mdr_service.serializers import JSON
 from mdr_service.settings import SETTINGS
 
-# Ids that a client can give to its requests.
+# Request ids that a client may send.
 _ID: Final = re.compile(r"[A-Za-z0-9._~+/=-]{1,64}")
 # Scheme and authority of a target in absolute form.
 _ABSOLUTE: Final = re.compile(r"https?://[^/]*", re.IGNORECASE)
@@ -51,7 +51,7 @@ def install(app: FastAPI) -> None:
     app.exception_handler(HTTPException)(_http_exception)
     app.add_middleware(ServiceMiddleware, transfers=app.state.transfers)
     if SETTINGS.cors_origins:
-        # Outside of all, so that a page can read problems as well.
+        # CORS is the outermost layer, so that pages can read problem documents as well.
         app.add_middleware(
             CORSMiddleware,
             allow_origins=SETTINGS.cors_origins,
@@ -62,9 +62,9 @@ def install(app: FastAPI) -> None:
 
 
 class Transfers:
-    """Total length of large bodies, at most `limit` bytes unless a single request has them.
+    """Total length of large bodies, at most `limit` bytes; a single request may exceed the limit.
 
-    A body is large above what the server buffers of every connection.
+    A body is large if it exceeds the server's buffer of a connection.
     """
 
     def __init__(self, limit: int) -> None:
@@ -85,10 +85,10 @@ class Transfers:
 
 
 class ServiceMiddleware:
-    """Outermost layer of the application, but for CORS.
+    """Outermost layer of the application, except for CORS.
 
-    An exception that reaches the server drops the connection, and with it the next request of a
-    client that reuses connections. The handler of last resort is therefore here.
+    An exception that reaches the server closes the connection, so that a client that reuses it
+    loses the next request. This layer therefore handles every exception.
     """
 
     def __init__(self, app: ASGIApp, transfers: Transfers) -> None:
@@ -107,10 +107,11 @@ class ServiceMiddleware:
         observability.CURRENT.set(record)
         sender = _sender(record, send)
         if scope["method"] == "HEAD":
-            # The server leaves out the body.
+            # The server omits the body of a response to HEAD.
             scope = {**scope, "method": "GET"}
         if found := _ABSOLUTE.match(scope["path"]):
-            # The form of a request to a proxy, which a server accepts as well: RFC 9112, 3.2.2.
+            # A server accepts the absolute form, which is used for proxies, as well (RFC 9112,
+            # 3.2.2).
             scope = {**scope, "path": scope["path"][found.end() :] or "/"}
         try:
             await self.app(scope, receive, sender)
@@ -149,10 +150,10 @@ def _log(record: RequestRecord, route: object) -> None:
 
 
 def _sender(record: RequestRecord, send: Send) -> Send:
-    """Return what sends a response: adds the common headers, and sends a large body in pieces.
+    """Return a `send` that adds the common headers, and sends a large body in pieces.
 
-    The server buffers what the client does not read: a piece waits until the one before it is
-    written.
+    The server buffers data that the client does not read, so a piece waits until the previous piece
+    is written.
     """
 
     async def send_pieces(message: Message) -> None:
@@ -232,8 +233,8 @@ async def _too_large(request: Request) -> ServiceError:
     return ServiceError(problems.BODY_TOO_LARGE, detail)
 
 
-# Coroutines: the framework runs plain functions in a thread, which takes five times as long as the
-# rest of a rejected request.
+# The handlers are coroutines, because the framework runs plain functions in a thread, which takes
+# five times as long as the rest of a rejected request.
 async def _failure(_request: Request, error: Exception) -> Response:
     return problem_response(problems.to_problem(error))
 

@@ -1,4 +1,4 @@
-"""Observability: request log and Prometheus metrics. Neither contains queries or results."""
+"""Observability: request log and Prometheus metrics, without queries or results."""
 
 import logging
 import logging.config
@@ -47,10 +47,10 @@ Info("mdr_build", "Version of the service.", registry=REGISTRY).info({"version":
 
 
 class LogStream:
-    """Standard error, where the server does not wait for its reader: lines beyond are lost."""
+    """Standard error, written without waiting for its reader: lines beyond its buffer are lost."""
 
     def write(self, text: str) -> None:
-        """Write a line. A pipe takes it whole, unless it is longer than `PIPE_BUF`."""
+        """Write a line. A pipe takes a line as a whole, unless it is longer than `PIPE_BUF`."""
         block = text.encode()
         try:
             while block:
@@ -59,7 +59,7 @@ class LogStream:
             LOST_LINES.inc()
 
     def flush(self) -> None:
-        """Do nothing: the line is written."""
+        """Do nothing, because every line is written at once."""
 
 
 LOG: Final = LogStream()
@@ -78,7 +78,7 @@ class RequestRecord:
     queued: float = 0.0
     """Time in the queue [s]."""
     held: int = 0
-    """Length of its large bodies in memory [bytes]."""
+    """Length of the request's large bodies in memory [bytes]."""
 
 
 CURRENT: Final[ContextVar[RequestRecord | None]] = ContextVar("request", default=None)

@@ -59,7 +59,7 @@ def _describe_defaults(schema: dict[str, Any]) -> None:
 
 
 def _refer(schema: dict[str, Any], member: str, models: Iterable[type]) -> None:
-    """Describe a member of any type as one of several models."""
+    """Replace the schema of an untyped member by a choice of several models."""
     entry = schema["properties"][member]
     del entry["type"], entry["additionalProperties"]
     entry["anyOf"] = [{"$ref": f"#/components/schemas/{model.__name__}"} for model in models]
@@ -78,13 +78,15 @@ def extend(app: FastAPI) -> None:
             return app.openapi_schema
         document = generate()
         schemas = document["components"]["schemas"]
-        # The service validates each request of a batch alone, so that its model has any object.
+        # The service validates each request of a batch separately, so that the model of a batch
+        # accepts any object.
         _refer(schemas["BatchItem"], "request", [kind.request for kind in QUERIES.values()])
         _refer(schemas["BatchItemAnswer"], "answer", [kind.response for kind in QUERIES.values()])
         for name in schemas.keys() - {"Settings", Problem.__name__}:
             _describe_defaults(schemas[name])
             for needed in schemas[name].get("dependentRequired", {}).values():
-                # The framework keeps them as a set, so that their order changes at every start.
+                # The framework stores required members as a set, whose order changes at every
+                # start.
                 needed.sort()
         document["security"] = []
         for path in document["paths"].values():

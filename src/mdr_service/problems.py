@@ -11,9 +11,9 @@ from mdr_core.errors import AccuracyError, InputError
 from mdr_service import sentences
 
 MEDIA_TYPE: Final = "application/problem+json"
-# Enough to show a pattern.
+# Maximum number of errors in a document, enough to show a pattern.
 MAX_ERRORS: Final = 20
-# Longer than any field name of a request; a longer name is text of the client.
+# No field name of a request is this long; a longer name is text of the client.
 MAX_NAME: Final = 64
 
 
@@ -107,7 +107,7 @@ def document(error: ServiceError) -> dict[str, Any]:
 
 
 def from_validation(error: ValidationError, model: type[BaseModel] | None = None) -> ServiceError:
-    """Return the failure of a model without the values sent; the default is a request model."""
+    """Return the failure of a model, without the values sent; the default is a request model."""
     model = model or sentences.request_model(error.title)
     found = error.errors(include_url=False, include_input=False)
     if found[0]["type"] == "json_invalid":
@@ -139,7 +139,8 @@ def invalid(errors: Sequence[Error], count: int | None = None) -> ServiceError:
 def pointer(path: Iterable[str | int]) -> str:
     """Return the JSON pointer (RFC 6901) to `path`.
 
-    It ends before a name that is longer than any field name, which is the client's own text.
+    The pointer ends before a name that is longer than any field name, because that is text of the
+    client.
     """
     steps = itertools.takewhile(lambda step: len(step) <= MAX_NAME, map(str, path))
     return "".join("/" + step.replace("~", "~0").replace("/", "~1") for step in steps)

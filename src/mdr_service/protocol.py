@@ -1,9 +1,9 @@
 """HTTP/1.1 protocol of the server: uvicorn's on h11, with bounds against hostile clients.
 
-h11 bounds what it keeps of an incomplete request, and reads the next request after the response to
-the one before; the kernel drops a client that reads nothing. The time of arrival is bounded here,
-because the application has no access to it. The class relies on internals of uvicorn, whose version
-is pinned for that reason; tests check that every overridden method exists and is called.
+h11 bounds the buffer of an incomplete request, and reads the next request only after the response;
+the kernel drops a client that reads nothing. This class bounds the time in which a request arrives,
+because the application has no access to it. It relies on internals of uvicorn, whose version is
+therefore pinned; tests check that every overridden method exists and is called.
 """
 
 import re
@@ -25,25 +25,26 @@ from mdr_service.problems import ProblemType, ServiceError
 from mdr_service.settings import SETTINGS
 
 MAX_HEADER_BYTES: Final = 16_384
-"""Maximum length of request line and headers, by default the one of h11 and of Node.js as well."""
+"""Maximum length of request line and headers, by default the limit of h11 and of Node.js."""
 BACKLOG: Final = 128
-"""Most connections that wait in the kernel; the event loop accepts as many in one turn."""
-# Descriptors kept free: for files and compute processes, and for the connections of four turns,
-# which pass from the acceptance of one to the end of another that makes room for it.
+"""Maximum number of connections that wait in the kernel; the event loop accepts as many in one
+turn."""
+# Number of descriptors kept free: for files and compute processes, and for the connections of four
+# turns of the event loop, the delay between accepting a connection and closing another one for it.
 _FREE_DESCRIPTORS: Final = 64 + 4 * BACKLOG
 LINGER_SECONDS: Final = 1.0
 """Time for a rejected client to finish sending and read the response."""
-# Send buffer of the kernel, which by default keeps megabytes of each response. The kernel sends
-# about as much per round trip: a megabyte per second to a client 100 ms away.
+# Size of the send buffer of the kernel, which by default keeps megabytes of each response. The
+# kernel sends about as much per round trip: a megabyte per second to a client 100 ms away.
 _SEND_BUFFER_BYTES: Final = 131_072
-# Start of the client's own text in a message of h11.
+# Part of a message of h11 that quotes text of the client.
 _SENT: Final = re.compile(r":? (?:bytearray|b['\"]).*", re.DOTALL)
 
 
 class BoundedProtocol(H11Protocol):
     """One connection of an HTTP/1.1 client."""
 
-    # None before the first request, which the declaration of uvicorn omits.
+    # None before the first request; the declaration of uvicorn omits that case.
     cycle: RequestResponseCycle | None  # type: ignore[assignment]
 
     def __init__(
@@ -58,7 +59,7 @@ class BoundedProtocol(H11Protocol):
         self._await_request()
         self._arrival = self.loop.call_at(self.due, self._check_arrival)
 
-    # uvicorn has the narrower type as well.
+    # uvicorn declares the transport by the narrower type as well.
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
         link = transport.get_extra_info("socket")
@@ -78,10 +79,10 @@ class BoundedProtocol(H11Protocol):
         return open_ and answered and self.conn.their_state is h11.IDLE
 
     def _make_room(self) -> None:
-        """Close a connection that has been idle for long, or this one if all others are busy.
+        """Close the connection that has been idle longest, or this one if all others are busy.
 
-        Without a free descriptor the event loop would accept no connection, and log that some
-        hundred times a second.
+        Without a free descriptor the event loop accepts no connection, and logs that hundreds of
+        times a second.
         """
         own = cast("set[BoundedProtocol]", self.connections)
         idle = [each for each in own if each is not self and each.is_idle]
@@ -93,7 +94,7 @@ class BoundedProtocol(H11Protocol):
         super().connection_lost(exc)
 
     def _await_request(self) -> None:
-        """Restart the limit of time: at the first byte of a request, or after a response.
+        """Restart the time limit at the first byte of a request, or after a response.
 
         The next request may have been sent ahead.
         """
@@ -112,7 +113,7 @@ class BoundedProtocol(H11Protocol):
     def _reject_slow(self, *, in_headers: bool) -> None:
         begun = in_headers and self.conn.trailing_data[0]
         if self.cycle and self.cycle.response_complete and not begun:
-            # The client would take a second response for the one to its next request.
+            # A client would take a second response for the response to its next request.
             self.transport.close()
             return
         slow = problems.HEADERS_TOO_SLOW if in_headers else problems.BODY_TOO_SLOW
@@ -121,7 +122,8 @@ class BoundedProtocol(H11Protocol):
     def data_received(self, data: bytes) -> None:
         if self.timeout_keep_alive_task is not None:
             self._await_request()
-        # A piece at a time: some ten thousand short headers would delay the other connections.
+        # The loop reads one piece at a time, because ten thousand short headers would delay the
+        # other connections.
         for begin in range(0, len(data), MAX_HEADER_BYTES):
             if not self._rejected:
                 super().data_received(data[begin : begin + MAX_HEADER_BYTES])
@@ -133,7 +135,7 @@ class BoundedProtocol(H11Protocol):
             self._reject_malformed(error)
 
     def send_400_response(self, msg: str) -> None:
-        # Called while it handles the error of the request.
+        # uvicorn calls this method while it handles the error of the request.
         self._reject_malformed(cast("h11.RemoteProtocolError", sys.exception()))
 
     def _should_upgrade(self) -> bool:
@@ -142,7 +144,8 @@ class BoundedProtocol(H11Protocol):
         Raises h11.RemoteProtocolError where the headers are too large, or a proxy in front could
         read another request: RFC 9112, 2.3 and 6.1.
         """
-        # As sent: h11 checks only headers that are incomplete when it reads them.
+        # The length is checked as sent, because h11 checks only headers that are incomplete when it
+        # reads them.
         target = self.scope["raw_path"], self.scope["query_string"]
         line = b"%s %s?%s HTTP/1.1" % (self.scope["method"].encode(), *target)
         if len(b"\r\n".join((line, *map(b": ".join, self.headers), b"", b""))) > MAX_HEADER_BYTES:

@@ -1,7 +1,7 @@
 """Queries by parameters: numbers, at most one range, and names separated by commas.
 
-Each parameter stands for a field of the request, whose schema describes it. The request is then
-validated like any other; an error in it is reported for the parameter.
+Each parameter corresponds to a field of the request, and is described by the schema of that field.
+The request is then validated as usual; an error in a field is reported for its parameter.
 """
 
 import re
@@ -29,7 +29,7 @@ from mdr_service.schemas.quantities import quantity
 from mdr_service.sentences import NUMBER
 from mdr_service.settings import SETTINGS
 
-# JSON numbers, and a leading plus, which spreadsheets write.
+# A number is written as in JSON, or with a leading plus, as in spreadsheets.
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _WHOLE: Final = re.compile(r"\d{1,9}", re.ASCII)
 _SPACINGS: Final[Mapping[str, Any]] = {"linear": np.linspace, "log": np.geomspace}
@@ -52,12 +52,12 @@ def _whole(text: str) -> int:
 
 # A schema that admits null keeps Swagger UI from checking the text, since it takes no exponents.
 _Number = Annotated[float, BeforeValidator(_number)] | None
-# Of a parameter that can be a range.
+# Type and schema of a parameter that can be a range.
 _SEVERAL: Final = "; give several as a range, by _from, _to and n, or as a list in JSON"
 _Load = Annotated[float, BeforeValidator(partial(_number, advice=_SEVERAL))] | None
 _Whole = Annotated[int, BeforeValidator(_whole)] | None
 _Length = Annotated[int, Field(ge=2, le=SETTINGS.max_length), BeforeValidator(_whole)] | None
-# By the type of the field in JSON.
+# Types of parameters by the JSON type of the field.
 _TYPES: Final[Mapping[str, Any]] = {"number": _Number, "integer": _Whole}
 _LOADS: Final = frozenset({"load", "tangential", "torsion", "oscillation"})
 _RENAMED: Final = {"cycles.normal.amplitude": "normal_amplitude", "radius": "r"}
@@ -72,12 +72,12 @@ _CYCLES: Final = frozenset({"cycles", "cycles.normal", "cycles.tangential"})
 
 
 class Parameters(ResponseParameters):
-    """Parameters of a URL that stand for a request."""
+    """Parameters of a URL that form a request."""
 
     model: ClassVar[type[contacts.Query]]
     """Model of the request."""
     fields: ClassVar[Mapping[str, str]]
-    """Field of the request by the parameter that stands for it, or for an end of its range."""
+    """Field of the request by parameter; a parameter gives the field, or an end of its range."""
 
     n: _Length = quantity("1", "Number of values in a range, including both ends", default=None)
     scale: Literal["linear", "log"] | None = Field(
@@ -97,7 +97,7 @@ class Parameters(ResponseParameters):
 
         Parameters
         ----------
-        profile : profile in place of the one that parameters give.
+        profile : profile that replaces the profile given by parameters.
         """
         given = self.model_dump(exclude_unset=True, exclude=set(Parameters.model_fields))
         self._join_range(given)
@@ -120,13 +120,13 @@ class Parameters(ResponseParameters):
 
     @contextmanager
     def pointing(self) -> Iterator[None]:
-        """Convert failures within the context to problems that point at parameters."""
+        """Convert failures inside the context to problems that point at parameters."""
         try:
             yield
         except problems.FAILURES as error:
             found = problems.to_problem(error)
             errors = [self._error(*each) for each in found.errors]
-            # Equal, but another object if a compute process found it.
+            # Equality is tested, because a compute process returns an equal but different object.
             if found.type == problems.INVALID_REQUEST:
                 raise problems.invalid(errors) from None
             raise replace(found, errors=errors) from None
@@ -150,7 +150,7 @@ class Parameters(ResponseParameters):
         for part in (start, stop, "n"):
             if part not in self.model_fields_set:
                 raise InputError((part,), "is required for a range")
-        # Between ends out of bounds numbers can overflow; the ends are then rejected.
+        # Numbers between ends out of bounds can overflow; validation then rejects the ends.
         with np.errstate(all="ignore"):
             spaced = _SPACINGS[self.scale or "linear"](given.pop(start), given.pop(stop), self.n)
         given[name] = spaced.tolist()
@@ -159,15 +159,15 @@ class Parameters(ResponseParameters):
         place = pointer[1:].replace("/", ".")
         name = self._parameter(place)
         if place in self.fields.values():
-            # It has another name as a parameter: `r` for the radius of fields.
+            # The field has another name as a parameter: `r` for the radius of fields.
             detail = re.sub(rf"\b{place.rpartition('.')[2]}\b", name, detail)
         return problems.pointer([name]), re.sub(r"\bbodies\b", _BODIES, detail)
 
     def _parameter(self, place: str) -> str:
-        """Return the parameter that stands for a place in the request.
+        """Return the parameter that corresponds to a place in the request.
 
-        For a group it is the first one that is given, or could be; in a range the end at fault.
-        Parameters of the response keep their names.
+        A group of fields corresponds to the first parameter that is given or, without any, that
+        exists; a range to the end at fault. Parameters of the response keep their names.
         """
         inside = [
             name
@@ -182,11 +182,11 @@ class Parameters(ResponseParameters):
 
 
 def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str]]:
-    """Yield name, field of the request, type and description of each parameter."""
+    """Yield the name, field of the request, type and description of each parameter."""
     found = leaves(model.model_json_schema())
-    # Of load paths only cycles consist of numbers.
+    # Cycles are the only load paths that consist of numbers.
     loads = _CYCLES if model is HistoryQuery else _LOADS
-    # Members of groups come before what all queries have.
+    # Members of groups come before the members that all queries share.
     for field, leaf in sorted(found, key=lambda each: "." not in each[0]):
         group, _, name = field.rpartition(".")
         type_ = _TYPES.get(leaf["type"])
@@ -221,7 +221,7 @@ def _of_both_bodies(field: str, type_: Any, text: str) -> Iterator[tuple[str, st
 
 
 def _parameters(model: type[contacts.Query]) -> type[Parameters]:
-    """Return the parameters that stand for a request."""
+    """Return the model of the parameters that form a request."""
     described = list(_described(model))
     definitions: dict[str, Any] = {
         name: (type_, Field(default=... if name == "kind" else None, description=text))

@@ -1,4 +1,4 @@
-"""Errors of pydantic in the sentences of the core: what is wrong, and what to do.
+"""Errors of pydantic in the style of the core: the fault, and its remedy.
 
 Pydantic's own sentences repeat the value sent, name the tags of its unions and the types of
 Python, and print the bound 1e50 with all its zeros.
@@ -30,7 +30,7 @@ _BODY: Final = 'an object of youngs_modulus and poissons_ratio, or "rigid"'
 _BODIES: Final = f"bodies (two, each {_BODY})"
 _PROFILE: Final = f"an object of kind, one of {_KINDS}, and its fields"
 _PLAIN: Final = "it is not JSON in plain UTF-8 (no compression, no byte order mark)"
-# By the type of the error, and by its type and field.
+# Sentences by the type of the error, and by its type and field.
 _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     "bool_type": "must be true or false, without quotes",
     "dict_type": "must be an object",
@@ -66,13 +66,13 @@ def request_model(name: str) -> _Model | None:
 
 
 def path(error: ErrorDetails) -> Path:
-    """Return the path into the request: the location without the branches of unions."""
+    """Return the path into the request, which is the location without the branches of unions."""
     location = error["loc"]
     # An unknown member keeps the client's spelling, in a branch of a union too.
     known = len(location) - (error["type"] == "extra_forbidden")
     steps = [step for at, step in enumerate(location) if at >= known or step not in BRANCHES]
     if steps[:1] == ["profile"]:
-        # The branch of a profile is its kind.
+        # The branch of a profile in the union is its kind.
         del steps[1:2]
     if error["type"].startswith("union_tag"):
         steps.append("kind")
@@ -85,7 +85,7 @@ def _field(place: Path) -> str:
 
 
 def of_json(message: str) -> str:
-    """Return why a text is not JSON, and what to do, from the message of pydantic."""
+    """Return the reason why a text is not JSON, and the remedy, from the message of pydantic."""
     reason = message.removeprefix("Invalid JSON: ")
     remedies = {
         "key must be": "put names in double quotes",
@@ -98,12 +98,12 @@ def of_json(message: str) -> str:
 
 
 def sentence(error: ErrorDetails, model: _Model | None) -> str:
-    """Return what is wrong with a request of the model, and what to do.
+    """Return the fault of a request of the model, and its remedy.
 
     Parameters
     ----------
     error : error of pydantic, whose location starts in the request.
-    model : model of the request, whose members are named in place of an unknown one.
+    model : model of the request; its members are listed if one is unknown.
     """
     kind, place = error["type"], path(error)
     if found := _SENTENCES.get((kind, _field(place))) or _SENTENCES.get(kind):
@@ -116,14 +116,14 @@ def _unknown(error: ErrorDetails, place: Path, model: _Model | None) -> str:
     models = _models(error, place[:-1], model)
     others = [each for each in models if place[-1] not in each.model_fields]
     if len(others) < len(models):
-        # A member of another branch of the union than the one that was chosen.
+        # The member belongs to another branch of the union.
         fields = [field for each in others for field in each.model_fields.items()]
         rivals = [name for name, field in fields if field.is_required()]
         return f"cannot be combined with {', '.join(rivals)}"
     if model is TorsionQuery and place[-1] in _NOT_WITH_A_TWIST:
         return f"a twist needs {NEEDED}"
     names = _members(models)
-    # A range is described by the parameter without `_from` and `_to`.
+    # The ends of a range, `_from` and `_to`, are described by the parameter itself.
     listed = ", ".join(name for name in names if not name.endswith(("_from", "_to")))
     return f"there is no such member; there are {listed}"
 
@@ -172,7 +172,7 @@ _WRITERS: Final[Mapping[str, _Writer]] = {
 
 
 def _models(error: ErrorDetails, place: Path, model: _Model | None) -> list[_Model]:
-    """Return the models of the object at a place, several where it is a union."""
+    """Return the models of the object at a place; a union has several."""
     if not place:
         return [model] if model else []
     # The location names the kind of the profile next.
@@ -184,7 +184,7 @@ def _models(error: ErrorDetails, place: Path, model: _Model | None) -> list[_Mod
 
 
 def _annotated(error: ErrorDetails, place: Path, model: _Model | None) -> list[Any]:
-    """Return the types of a field, or of the items of a list, and the words that it can be."""
+    """Return the types of a field, or of the items of a list, and its permitted words."""
     *inside, field = (step for step in place if isinstance(step, str))
     owners = _models(error, tuple(inside), model)
     fields = [owner.model_fields[field] for owner in owners if field in owner.model_fields]
@@ -207,7 +207,7 @@ def _members(models: Sequence[_Model]) -> list[str]:
 
 
 def _described(models: Sequence[_Model]) -> str:
-    """Return what an object consists of, empty for other values."""
+    """Return a description of the members of an object; empty for other values."""
     names = _members(models)
     if len(models) == 1 and issubclass(models[0], Choice):
         controls = [name for name in names if name not in models[0].optional]

@@ -1,7 +1,7 @@
 """Limits of the service, read once from environment variables with the prefix ``MDR_``.
 
-The sizes are part of the request models, which reject a list that is too long while it is parsed,
-and of the OpenAPI document. They are therefore fixed when the service starts.
+The size limits are fixed when the service starts, because they are part of the OpenAPI document and
+of the request models, which reject a list that is too long during parsing.
 """
 
 import os

@@ -1,8 +1,8 @@
 """Checkpoint of a sweep: a directory beside the result with the completed chunks.
 
-No file in it is ever incomplete: a file is written under another name, forced to the disk, and
-renamed. The name of a chunk has a digest of sweep, index and content, so that a chunk that was
-damaged, copied or belongs to another sweep is detected. The directory is deleted once the result is
+Files in the directory are always complete: each is written under another name, forced to the disk,
+and renamed. The name of a chunk contains a digest of sweep, index and content, which reveals a
+chunk that is damaged, copied or of another sweep. The directory is deleted once the result is
 written.
 """
 
@@ -30,7 +30,7 @@ class Checkpoint:
     """Completed chunks of a sweep, beside the path of its result."""
 
     def __init__(self, target: Path) -> None:
-        # A symbolic link stays, and the file that it names is written.
+        # The target of a symbolic link is written, and the link is preserved.
         self.target = target.resolve()
         self.folder = self.target.with_name(self.target.name + ".work")
         self._manifest = self.folder / "manifest.json"
@@ -70,7 +70,7 @@ class Checkpoint:
                     f"{self.folder} holds chunks of another sweep or of another version; "
                     "use --restart to discard them"
                 )
-            # Chunks without a manifest remain of a sweep that was killed while it deleted them.
+            # Chunks without a manifest are left by a sweep that was killed while deleting them.
             for path in self.folder.glob(f"*{_UNFINISHED}" if known else "*.*"):
                 path.unlink()
             with self._whole(self._manifest) as path:
@@ -89,7 +89,7 @@ class Checkpoint:
             path.write_bytes(content)
 
     def chunks(self, count: int) -> Iterator[pa.RecordBatch]:
-        """Yield all chunks in their order; raise UsageError unless there are `count` sound ones."""
+        """Yield all chunks in their order; raise UsageError unless `count` of them are intact."""
         stored = self._stored()
         for expected in range(count):
             index, content = next(stored, (count, b""))
@@ -117,7 +117,7 @@ class Checkpoint:
 
     @contextmanager
     def _whole(self, target: Path) -> Iterator[Path]:
-        """Yield a path to write; the file gets its own name when it is on the disk."""
+        """Yield a temporary path to write; the file gets its final name once it is on the disk."""
         path = self.folder / (target.name + _UNFINISHED)
         try:
             yield path

@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _is_interrupt(error: BaseException | None) -> bool:
-    """Return True for an interrupt, or an error while workers are closed after one."""
+    """Return True for an interrupt, or for an error while workers are closed after an interrupt."""
     while error and not isinstance(error, KeyboardInterrupt):
         error = error.__context__
     return error is not None

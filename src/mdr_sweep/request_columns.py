@@ -23,7 +23,7 @@ Cells: TypeAlias = "pa.Array[Any]"
 _NUMBER: Final = r"^-?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$"
 # Members of a list are named by their index; `#` stands for any of them.
 _INDEX: Final = re.compile(r"(?<=\.)(0|[1-9][0-9]*)(?=\.|$)")
-# Fields over the radius, which no sweep computes.
+# Fields that belong to results over the radius, which no sweep computes.
 _OVER_RADIUS: Final = frozenset({"radius", "points", "quantities"})
 
 
@@ -41,7 +41,7 @@ class Field:
         return np.asarray(is_significant & (values >= self.low) & (values <= self.high))
 
     def fits(self, kind: pa.DataType) -> bool:
-        """Return True if a column of an Arrow type can hold the field."""
+        """Return True if a column of this Arrow type can contain the field."""
         if self.type == "array":
             is_numbers = pa.types.is_list(kind) and _is_number(kind.value_type)
             return pa.types.is_null(kind) or is_numbers
@@ -58,18 +58,18 @@ class Column:
     field: Field
     cells: Cells
     given: NDArray[np.bool_]
-    """False where the cell is empty: the field is absent from the request."""
+    """False where the cell is empty, so that the field is absent from the request."""
     values: Values
     """Numbers; NaN where the cell is empty or is not a number."""
 
     def value(self, row: int) -> Any:
-        """Return the value of a row, as it stands in the request."""
+        """Return the value of a row in the form of the request."""
         number = float(self.values[row])
         return self.cells[row].as_py() if isnan(number) else number
 
     @property
     def output(self) -> Cells:
-        """The column as it stands in the result: numbers are doubles, and NaN is empty."""
+        """Column of the result: numbers are doubles, and NaN becomes an empty cell."""
         if self.field.type == "number":
             return pa.array(self.values, mask=np.isnan(self.values))
         return pc.cast(self.cells, pa.string()) if self.field.type == "string" else self.cells
@@ -93,7 +93,7 @@ def _fields(query: str) -> Mapping[str, Field]:
 
 
 def read_columns(spec: Spec, batch: pa.RecordBatch) -> dict[str, Column]:
-    """Return the fields of a batch by their dotted names, without the columns that are kept."""
+    """Return the fields of a batch by their dotted names, without the copied columns."""
     found = {}
     for name, given in zip(batch.schema.names, batch.columns, strict=True):
         own = None if name in spec.kept else field(spec.query, name)

@@ -12,10 +12,10 @@ import pyarrow as pa
 from mdr_sweep import tables, vectorized
 from mdr_sweep.spec import Spec
 
-# Time of the last sample, long against the overhead of a call [s].
+# Time of the last sample, much longer than the overhead of a call [s].
 _SAMPLE_SECONDS: Final = 0.1
-# Time that worker processes take to start and import this package, as measured; a chunk takes as
-# long: a lost worker loses little, and transfer takes a small part [s].
+# Measured time in which worker processes start and import this package [s]. A chunk takes as long,
+# so that a lost worker costs little, and transfer is a small part.
 START_SECONDS: Final = 2.0
 
 
@@ -26,11 +26,12 @@ class Estimate(NamedTuple):
     chunk: int
     """Cases in a chunk."""
     processes: int
-    """Processes; 1 is this one, where the start of others takes longer than they save."""
+    """Number of processes; 1 means this process, if further processes cost more time than they
+    save."""
     seconds: float
-    """Time on an idle machine, including the start of the workers and the writing."""
+    """Time on an idle machine, including the start of the workers and the writing of the result."""
     disk: float
-    """Size of the chunks and of the result, which exist side by side at the end [bytes]."""
+    """Size of the chunks and the result together, which both exist at the end [bytes]."""
 
     @property
     def lines(self) -> Iterator[str]:
@@ -46,10 +47,11 @@ class Estimate(NamedTuple):
 def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate:
     """Return the estimated resources of a sweep by solving samples of increasing size.
 
-    Without a number of workers, all cores are used if that is worth the start of the processes.
+    If the number of workers is not given, all cores are used where that saves more time than the
+    start of the processes takes.
     """
     cases = tables.sample(source)
-    # The first case includes the time of everything built on first use.
+    # The time of the first case includes everything that is built on first use.
     vectorized.solve(spec, cases.slice(0, 1))
     size, solving = 1, 0.0
     while solving < _SAMPLE_SECONDS:

@@ -13,18 +13,20 @@ from mdr_sweep.spec import Spec, SweepError, versions
 
 Chunk = tuple[int, pa.RecordBatch]
 """Index of a chunk, and its cases or the rows of the result."""
-# Chunks in flight for each worker: one that is solved, and one that waits. Bounds the memory.
+# Number of chunks in flight for each worker: one that is solved, and one that waits. It bounds the
+# memory.
 _AHEAD: Final = 2
-# Environment of the workers on this machine. More BLAS threads than cores slow each other down. The
-# memory trimming of Dask's default is left out: it makes allocation slower than the computation.
+# Environment of the workers on this machine. BLAS threads slow each other down if there are more
+# threads than cores. Dask's default memory trimming is left out, because it makes allocation slower
+# than the computation.
 _ENVIRONMENT: Final = dict.fromkeys(
     ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), 1
 )
 _SETTINGS: Final = {
     "distributed.nanny.pre-spawn-environ": _ENVIRONMENT,
-    # An interrupt by the terminal is left to the client, which closes its workers.
+    # Workers ignore an interrupt from the terminal; the client handles it and closes its workers.
     "distributed.worker.preload": ["import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"],
-    # A chunk of many columns is sent once: it is no reason for a warning.
+    # Dask's warning about large chunks is suppressed, because each chunk is sent only once.
     "distributed.admin.large-graph-warning-threshold": "1 GB",
 }
 
@@ -43,7 +45,7 @@ def in_workers(
     """
     distributed = import_module("distributed")
     import_module("dask").config.set(_SETTINGS)
-    # Workers that are closed while they report write tracebacks; what counts is raised here.
+    # Workers that are closed while they report write tracebacks; relevant errors are raised here.
     local = {
         "n_workers": processes,
         "threads_per_worker": 1,
@@ -87,7 +89,7 @@ def solve(spec: Spec, expected: dict[str, str], index: int, batch: bytes) -> Chu
 
 
 def _to_bytes(batch: pa.RecordBatch) -> bytes:
-    """Return a batch as an Arrow stream; the pickle of a slice would hold its whole origin."""
+    """Return a batch as an Arrow stream; pickling a slice would store the whole array."""
     sink = pa.BufferOutputStream()
     with pa.ipc.new_stream(sink, batch.schema) as writer:
         writer.write_batch(batch)

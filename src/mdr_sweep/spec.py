@@ -17,17 +17,18 @@ from mdr_core.wear.limit import LimitingWear
 
 _NORMAL: Final = tuple(name for name in NORMAL_QUANTITIES if name != "maximum_pressure")
 PULL_OFF: Final = ("pull_off_force", "pull_off_depth", "retraction")
-"""Quantities of adhesive contacts alone."""
+"""Quantities that only adhesive contacts have."""
 QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": _NORMAL,
     "tangential": (*_NORMAL, *TangentialContact.quantities),
     "torsion": (*_NORMAL, *TorsionalContact.quantities),
-    # Without the velocities and the numbers of cycles, which are columns of the input.
+    # The first quantities, velocities and numbers of cycles, are left out: they are columns of the
+    # input.
     "impact": Impact.quantities[2:],
     "wear": LimitingWear.quantities,
     "evolution": WearEvolution.quantities[1:],
 }
-"""Quantities that a sweep computes unless some are named, by query."""
+"""Quantities that a sweep computes by default, by query."""
 ONLY_IF_NAMED: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": ("maximum_pressure", *MODEL_ERRORS, "data_error", *PULL_OFF),
     "tangential": ("maximum_pressure", "maximum_shear_stress", *MODEL_ERRORS, "data_error"),
@@ -50,10 +51,10 @@ class SweepStatus(IntEnum):
     DONE = 0
     ENDED_EARLY = 1
     INVALID_INPUT = 2
-    """As argparse reports invalid arguments."""
+    """The status with which argparse reports invalid arguments."""
     ALL_FAILED = 3
     INTERRUPTED = 130
-    """As shells report programs terminated by SIGINT."""
+    """The status with which shells report programs terminated by SIGINT."""
 
 
 class SweepError(Exception):
@@ -73,7 +74,7 @@ class Spec:
     query : name of the query, of `QUANTITIES`.
     constants : fields of all cases, by their dotted names.
     quantities : quantities to compute, in the order of the result.
-    kept : columns of the input that are copied and not read.
+    kept : columns of the input that are copied but not interpreted.
     """
 
     query: str

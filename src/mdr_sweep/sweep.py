@@ -35,7 +35,7 @@ from mdr_sweep.tables import SUFFIXES, Grid, Source, Table, write
 # Interval of progress reports into a log [s].
 _LOG_SECONDS: Final = 30.0
 _UNITS: Final = "the consistent system of the input: with m and N, pressures are in Pa"
-# Numbers in an error, which vary from case to case; the steps of a JSON pointer follow a slash.
+# Numbers in an error message, which vary between cases; indices in a JSON pointer follow a slash.
 _NUMBER: Final = re.compile(r"(?<![\w/.])[-+]?[0-9][\w.+-]*")
 
 
@@ -50,7 +50,7 @@ def run(arguments: Namespace) -> int:
         return SweepStatus.DONE
     known = {} if arguments.restart else checkpoint.manifest
     chunk = arguments.chunk or known.get("chunk") or estimate.chunk
-    # All on which the numbers of the result depend.
+    # The manifest contains everything on which the numbers of the result depend.
     identity = asdict(spec) | {"input": source.identity, "versions": versions()}
     manifest = identity | {"chunk": chunk, "format": arguments.out.suffix}
     with checkpoint.opened(manifest, restart=arguments.restart) as done:

@@ -17,12 +17,13 @@ from pyarrow.lib import concat_batches  # `pa.concat_batches`, which the type st
 from mdr_sweep.request_columns import Values
 from mdr_sweep.spec import UsageError
 
-# Rows of a row group of a Parquet file, and the largest number in a chunk: about 10 MB. Arrays of
-# so many cases fit the processor's cache; larger ones take up to twice as long per case.
+# Number of rows in a row group of a Parquet file, and maximum number in a chunk: about 10 MB.
+# Arrays of this many cases fit in the processor's cache; larger arrays take up to twice as long per
+# case.
 ROW_GROUP: Final = 65_536
-# Values of an axis, which are held in memory: 80 MB.
+# Maximum number of values of an axis, which take 80 MB of memory.
 _MAX_VALUES: Final = 10_000_000
-# Parts of a sample, so that it represents a sorted input.
+# Number of places from which a sample is taken, so that it represents a sorted input.
 _PARTS: Final = 8
 SUFFIXES: Final = (".parquet", ".csv")
 
@@ -47,7 +48,7 @@ class Grid:
 
 
 class Table:
-    """Cases in a file: Parquet, or CSV, of which every cell is read as text."""
+    """Cases in a file: Parquet, or CSV, whose cells are all read as text."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -76,7 +77,7 @@ class Table:
 
     def _read(self) -> Iterator[pa.RecordBatch]:
         if self.path.suffix == ".parquet":
-            # With read-ahead, everything read would stay in memory to the end.
+            # Read-ahead would keep everything that was read in memory to the end.
             with pq.ParquetFile(self.path, pre_buffer=False) as file:
                 yield from file.iter_batches(batch_size=ROW_GROUP, use_threads=False)
         else:
@@ -119,7 +120,7 @@ def axis(name: str, text: str) -> Values:
 
 
 def sample(source: Source) -> pa.RecordBatch:
-    """Return up to `ROW_GROUP` cases, from several places of the input."""
+    """Return up to `ROW_GROUP` cases, sampled from several places of the input."""
     rows = ROW_GROUP // _PARTS
     count = -(-source.rows // rows)
     places = sorted({count * part // _PARTS for part in range(_PARTS)})
@@ -145,13 +146,13 @@ def regrouped(batches: Iterable[pa.RecordBatch], rows: int) -> Iterator[pa.Recor
 def write(
     sink: Any, suffix: str, batches: Iterable[pa.RecordBatch], provenance: Mapping[str, Any]
 ) -> None:
-    """Write rows to a file. Equal rows give equal bytes: nothing depends on chunks or on the time.
+    """Write rows to a file. Equal rows give equal bytes, independent of chunks and of the time.
 
     Parameters
     ----------
     sink : path or binary file.
     suffix : ``.parquet`` or ``.csv``.
-    batches : the rows, in one batch or more.
+    batches : the rows, in at least one batch.
     provenance : stored in JSON as the metadata `mdr` of a Parquet file.
     """
     rows = regrouped(batches, ROW_GROUP)

@@ -1,6 +1,6 @@
-"""Solution of a batch of cases: one call of the core for all that differ in numbers only.
+"""Solution of a batch of cases, with one call of the core for cases that differ only in numbers.
 
-Cases that the call does not solve are solved one by one.
+Cases that such a call cannot solve are solved one by one.
 """
 
 from collections.abc import Iterator, Mapping
@@ -69,7 +69,7 @@ def _is_array(name: str, column: Column) -> bool:
 
 
 def _groups(columns: Columns, size: int) -> Iterator[Rows]:
-    """Yield the rows that give the same fields, with equal values where these are not arrays."""
+    """Yield groups of rows with equal fields, and equal values of those that are not arrays."""
     keys: dict[str, Any] = {}
     for name, column in columns.items():
         if not _is_array(name, column):
@@ -92,7 +92,7 @@ def _request(spec: Spec, columns: Columns, row: int) -> dict[str, Any]:
 
 
 def _solve_group(spec: Spec, columns: Columns, rows: Rows) -> tuple[Rows, Results]:
-    """Return the cases of a group that a call of the core solves, and their results."""
+    """Return the cases of a group that one call of the core solves, and their results."""
     swept = {
         name: column
         for name, column in columns.items()
@@ -143,12 +143,12 @@ def _call(
             contact, **with_arrays(friction(query) | control(query.tangential))
         )
     results: Results = {WARNING: _warnings(query, source, size)}
-    # Overflow, and infinite pressures, are solved one by one.
+    # Cases with overflow or infinite pressures are solved one by one.
     solved = np.array(np.broadcast_to(np.isfinite(contact.mean_pressure), (size,)))
     for name in spec.quantities:
         values: Any = getattr(source if hasattr(type(source), name) else contact, name)
         if values is None:
-            # Nothing is left open by data.
+            # These profiles have no data error.
             results[name] = np.full(size, nan)
             continue
         results[name] = np.broadcast_to(values, (size,))
@@ -160,7 +160,7 @@ def _call(
 def _warnings(
     query: NormalQuery, source: NormalContact | TangentialContact, size: int
 ) -> NDArray[Any]:
-    """Return the codes of the warnings of each case, in the order of the service."""
+    """Return the codes of the warnings of each case, in the service's order."""
     contact = source.normal
     found = validity.findings(source, contact.material)
     flags: dict[str, Any] = {each.code: each.where for each in found}

@@ -1,4 +1,4 @@
-"""Stick, full slip and endless wear are told from a finite limit."""
+"""Stick, full slip and unbounded wear are distinguished from a finite limiting state."""
 
 from __future__ import annotations
 

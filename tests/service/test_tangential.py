@@ -1,4 +1,4 @@
-"""Tangential contact over HTTP: the core's digits, one entry per pair of loads."""
+"""Tangential contact over HTTP has the core's results, one entry per pair of loads."""
 
 import pytest
 

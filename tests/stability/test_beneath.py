@@ -1,4 +1,4 @@
-"""Stresses towards surface, edges and axis, and far away, keep their digits."""
+"""Stresses stay accurate towards the surface, edges and axis, and in the far field."""
 
 from __future__ import annotations
 

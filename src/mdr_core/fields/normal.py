@@ -26,7 +26,7 @@ from mdr_core.validation import (
 )
 
 Contact = NormalContact | TangentialContact
-"""A contact, whose tangential load does not change the fields of the normal one."""
+"""A contact with or without tangential load, which does not affect the normal fields."""
 # Values of a field under the load of this index, at some radii.
 Field = Callable[[int, Array], Array]
 
@@ -180,7 +180,7 @@ def _pressed(contact: Contact) -> NormalContact:
 
 
 def fill(shape: tuple[int, ...], field: Field, radius: ArrayLike) -> Array:
-    """Return the field of every load at all radii; `field` gives that of one load.
+    """Return the field of every load at all radii; `field` returns the field of one load.
 
     Raises InputError if there is no radius, or one that is negative or not finite.
     """
@@ -194,19 +194,20 @@ def stress(profile: Profile, annulus: Annulus, a: float, r: Array) -> Array:
     Parameters
     ----------
     profile : one profile.
-    annulus : its ends c and a in the contact coordinate.
+    annulus : annulus from c to a in the contact coordinate.
     a : contact radius [length].
     r : radii [length], shape (m,).
     """
     inside = r < a
     if every(inside):
-        # Most radii of a query are inside, and selecting them takes as long as a closed form.
+        # Most radii of a query are inside the contact, and selecting them takes as long as a closed
+        # form.
         return profile.pressure_kernel(annulus, r)
     result = np.zeros(r.shape)
     if inside.any():
         result[inside] = profile.pressure_kernel(annulus, r[inside])
     if profile.has_no_partial_slip and annulus.outer > 0:
-        # The stress at the edge of a flat punch.
+        # The stress is infinite at the edge of a flat punch.
         result[r == a] = inf
     return result
 
@@ -223,7 +224,7 @@ def by_load(profile: Profile, shape: tuple[int, ...], *columns: Any) -> list[lis
 
 
 def _depth_left(profile: Profile, a: float, coordinate: float, r: Array) -> Array:
-    """d - g(r) as the step from r to a, free of cancellation near the edge [length]."""
+    """d - g(r), as the step from r to a, which is free of cancellation near the edge [length]."""
     result = np.zeros(r.shape)
     inside = r < a
     if profile.has_no_partial_slip:

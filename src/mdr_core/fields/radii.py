@@ -1,4 +1,4 @@
-"""Grids of radii, and the error of fields by the rounding error of computed edges.
+"""Grids of radii, and the error of fields due to the rounding error of computed edges.
 
 A contact radius or slip front that follows from a load has a rounding error. A stress has a root at
 each of them, so that its error grows without bound next to an edge. Source: notes, §8.
@@ -22,8 +22,8 @@ from mdr_core.torsion import TorsionalContact
 from mdr_core.typing import Array
 from mdr_core.validation import extremes, require_type, require_whole
 
-# Largest error of a field by the error of an edge, relative to its largest value, on a grid with
-# room enough: a tenth of the errors estimated elsewhere.
+# Largest error of a field due to the error of an edge, relative to its largest value, on a grid
+# with room enough. It is a tenth of the other estimated errors.
 _GRID_ERROR: Final = 1e-12
 
 
@@ -36,11 +36,11 @@ class Edges(NamedTuple):
     radius: Array
     """[length]"""
     error: Array
-    """Their error [length]."""
+    """Rounding errors of the radii [length]."""
     scale: Array
-    """Distance over which a stress changes there [length]."""
+    """Distance over which a stress changes next to the edge [length]."""
     reach: Array
-    """Distance over which a displacement changes there [length]."""
+    """Distance over which a displacement changes next to the edge [length]."""
 
 
 def edges(contact: Contact | ContactState) -> Edges:
@@ -68,7 +68,7 @@ def edges(contact: Contact | ContactState) -> Edges:
         return Edges(*map(np.ravel, (a, error, scale, scale)))
     c, scale = contact.stick_radius, np.minimum(scale, contact.slip_width)
     if isinstance(contact, TorsionalContact):
-        # The stress in the stick zone rises from 0 at the axis to mu p(c).
+        # The stress of a twist rises in the stick zone from 0 at the axis to mu p(c).
         at_c = reach = np.minimum(scale, c)
     else:
         at_c, reach = _near_axis(normal, c, scale)
@@ -80,8 +80,8 @@ def _near_axis(contact: NormalContact, c: Array, scale: Array) -> tuple[Array, A
     """Return the distances over which stresses and displacements change next to a slip front.
 
     A front c moves the stress by (E*/pi) g'(c) dc/sqrt(c^2 - r^2), and the foundation by g'(c) dc.
-    For c < a/2 these are taken over the mean pressure F_N/(pi a^2) and the depth; next to a flat,
-    which c does not reach, and for larger c both distances are `scale`.
+    For c < a/2 the changes are divided by the mean pressure F_N/(pi a^2) and by the depth. For
+    larger c, and next to a flat, which c does not reach, both distances are `scale`.
     """
     profile, top, a = contact.profile, contact.coordinate, contact.contact_radius
     inner = (c > 0) & (c < a / 2) & (profile.first_radius == 0)
@@ -94,7 +94,7 @@ def _near_axis(contact: NormalContact, c: Array, scale: Array) -> tuple[Array, A
 
 
 def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) -> float:
-    """Return the error of a field by the errors of the edges, relative to its largest value [1].
+    """Return the error of a field due to errors of edges, relative to its largest value [1].
 
     Edges are the contact radius and the slip fronts if they follow from a load. Radii within four
     units in the last place of an edge are excluded, because the relative error at a root is
@@ -117,9 +117,10 @@ def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) ->
 
 
 def rim_error(edges: Edges, distance: Array) -> float:
-    """Return the error of a stress 1/sqrt(distance) from the edges (m, k) by their own error [1].
+    """Return the error of a stress 1/sqrt(distance), for (m, k) distances from edges [1].
 
-    Relative to the stress there; points within four units in the last place are excluded.
+    The error is relative to the local stress. Points within four units in the last place of an edge
+    are excluded.
     """
     gap = np.abs(distance)
     gap = np.where(gap > edges.radius * ADJACENT, gap, inf)
@@ -137,7 +138,7 @@ def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
     at, error, scale, reach = (part[used] for part in edges)
     if not root:
         return float((2 * error / reach).max())
-    # The nearest radii on either side of each edge. An edge does not change stresses outside.
+    # Take the nearest radii on either side of each edge. An edge does not change stresses outside.
     r, away = np.concatenate([(-inf,), radius, (inf,)]), at * ADJACENT
     r.sort()
     below = at - r[r.searchsorted(at - away) - 1]
@@ -170,7 +171,7 @@ def grid(contact: Contact | ContactState, points: int) -> Array:
 
     Raises
     ------
-    InputError : fewer points than such radii.
+    InputError : fewer points than edges and breaks.
     """
     known = edges(contact)
     profile = (contact if isinstance(contact, ContactState) else contact.normal).profile
@@ -213,7 +214,7 @@ def graded(stops: Array, points: int) -> Array:
     if points < stops.size:
         raise InputError(("points",), f"at least {stops.size} are needed for the singular radii")
     gaps = np.diff(stops)
-    # Every gap gets one point, and a share of the rest in proportion to the root of its length.
+    # Every gap gets one point, and the other points in proportion to the root of its length.
     spare = points - stops.size
     share = np.sqrt(gaps) / np.sqrt(gaps).sum() * spare
     counts = np.floor(share).astype(int)

@@ -33,16 +33,16 @@ class Traction(NamedTuple):
     ratio: float
     """mu E*/G* [1]."""
     coordinate: Array
-    """Contact coordinates of the ends, shape (n + 1,)."""
+    """Contact coordinates of the ends of the annuli, shape (n + 1,)."""
     radius: Array
-    """Radii of the ends [length], shape (n + 1,)."""
+    """Radii of the ends of the annuli [length], shape (n + 1,)."""
     width: Array
     """Widths in the contact coordinate, shape (n,). The coordinate of a flat punch is its depth,
     and all its springs carry the load of a depth `width`."""
     slope: Array
-    """k [1], shape (n,)."""
+    """Slope k of the anchors in each annulus [1], shape (n,)."""
     above: Array
-    """q_x/(mu E*) at their outer ends [length], shape (n,)."""
+    """q_x/(mu E*) at the outer end of each annulus [length], shape (n,)."""
     exact: bool = False
     """True if the contact radius is prescribed."""
     excess: float = 0.0
@@ -75,9 +75,10 @@ class Traction(NamedTuple):
 def shear_stress(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
     """Return tau(r) = (mu E*/pi) sum k_i int g'(x)/sqrt(x^2 - r^2) dx [pressure].
 
-    The i-th integral goes over [max(r, x_i-1), x_i] between neighbouring slip fronts, under a
-    monotonic load from c to a. Positive in the direction of a positive tangential force, zero
-    outside the contact. Not a difference of pressures, it is free of cancellation.
+    The i-th integral goes over [max(r, x_i-1), x_i] between neighbouring slip fronts; under a
+    monotonic load the only one goes from c to a. The stress is positive in the direction of a
+    positive tangential force, and zero outside the contact. The sum is free of cancellation, unlike
+    a difference of pressures.
 
     Source: mdr-5, Eqs. (5.18), (5.34), (5.38), (5.53), (5.70); notes, §10.
 
@@ -139,7 +140,7 @@ def slip(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
 
     def values(load: Traction, r: Array) -> Array:
         result = np.zeros(r.shape)
-        # An edge that differs from the contact radius by rounding belongs to the contact.
+        # A radius that differs from the contact radius by rounding alone belongs to the contact.
         inside = r <= load.radius[-1] * (1 + ADJACENT)
         # S(0; r) and S(b; r) are equal: g is zero on a flat.
         fronts = [0.0, *load.radius[1:].tolist()]

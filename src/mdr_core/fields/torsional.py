@@ -15,9 +15,9 @@ from mdr_core.validation import require_type
 def torsional_stress(contact: TorsionalContact, radius: ArrayLike) -> Array:
     """Return the circumferential shear stress tau(r) [pressure].
 
-    mu p(r) in the slip annulus, and in the stick zone (2 mu E* r/pi^2) int_c^a (-dP/dx)/sqrt(x^2 -
-    r^2) dx, the sum over the discs that turned. Positive in the direction of a positive torque,
-    zero outside the contact, and infinite at the edge of a flat punch.
+    It is mu p(r) in the slip annulus, and (2 mu E* r/pi^2) int_c^a (-dP/dx)/sqrt(x^2 - r^2) dx, the
+    sum over the discs that turned, in the stick zone. It is positive in the direction of a positive
+    torque, zero outside the contact, and infinite at the edge of a flat punch.
 
     Source: jaeger; notes, §16.
 

@@ -57,7 +57,7 @@ class ContactState(Results):
     before: Polyline | None = None
     """Polyline before the step of `advance` that led here; None for other states."""
     known_edges: list[Edge] = field(init=False, default_factory=list)
-    """Edges of the first vertices; a step passes the edges it keeps to the next state."""
+    """Edges of the first vertices; a step passes the edges that it keeps to the next state."""
     quantities: ClassVar[tuple[str, ...]] = (
         "indentation_depth",
         "normal_force",
@@ -101,7 +101,7 @@ class ContactState(Results):
 
     @property
     def _edges(self) -> list[Edge]:
-        """Edges of all vertices; in separation one on the axis."""
+        """Edges of all vertices; a single edge on the axis in separation."""
         known = self.known_edges
         if not known:
             known.append(Edge(*(number(0.0),) * 3))
@@ -114,7 +114,7 @@ class ContactState(Results):
         """Edge of the vertex at a depth, `span` above another one."""
         profile = self.profile
         if profile.largest_loads is not None:
-            # By rounding a corner may be deeper than the load point.
+            # A rounding error may place a corner deeper than the load point.
             depth = min(depth, profile.largest_loads[0])
         coordinate = profile.coordinate_from_depth(depth)
         force = profile.reduced_force(coordinate)
@@ -137,7 +137,7 @@ class ContactState(Results):
 
     @cached_property
     def coordinate(self) -> Array:
-        """Contact coordinates of the vertices; in separation one on the axis."""
+        """Contact coordinates of the vertices; a single one on the axis in separation."""
         return read_only(np.array([edge.coordinate for edge in self._edges]))
 
     @cached_property
@@ -191,7 +191,7 @@ class ContactState(Results):
 
     @property
     def front_errors(self) -> Array:
-        """Errors of `slip_fronts` by the rounding of the forces that they follow from [length]."""
+        """Errors of `slip_fronts` due to rounding of the prescribed forces [length]."""
         forces, fronts = (np.array([edge[i] for edge in self._edges]) for i in (1, 0))
         if self.profile.has_no_partial_slip or fronts.size < 3:
             return np.zeros(0)
@@ -242,12 +242,12 @@ def unloaded(
 def advance(
     state: ContactState, indentation_depth: float, tangential_displacement: float
 ) -> ContactState:
-    """Return the state after one straight step in depth and displacement, exactly.
+    """Return the exact state after one straight step in depth and displacement.
 
-    Springs that stick keep their anchors, springs that come into contact take the displacement
-    of that moment, springs that would carry more than mu q slip. A depth <= 0 separates the bodies
-    and erases the slip memory. Use it in time-stepping codes that determine the next load from
-    the forces; use `solve` for load histories known a priori.
+    Springs that stick keep their anchors, springs that come into contact take the displacement at
+    that moment as their anchor, springs that would carry more than mu q slip. A depth <= 0
+    separates the bodies and erases the slip memory. Use it in time-stepping codes that determine
+    the next load from the forces; use `solve` for load histories known a priori.
 
     Source: mdr-5, Eqs. (5.4)-(5.9); notes, §10.
 

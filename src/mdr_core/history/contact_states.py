@@ -211,9 +211,9 @@ def advance_many(
     indentation_depth: ArrayLike,
     tangential_displacement: ArrayLike,
 ) -> ContactStates:
-    """Return the states of many contacts after one straight step of each, exactly.
+    """Return the exact states of many contacts after one straight step of each.
 
-    Each contact has the results of `advance`, in a tenth of the time or less.
+    Each contact has the results of `advance`, in at most a tenth of its time.
 
     Source: mdr-5, Eqs. (5.4)-(5.9); notes, §10.
 
@@ -326,7 +326,7 @@ def _per_contact(
 
 
 def _repeated(state: ContactState, count: int) -> ContactStates:
-    """Return several contacts in one state."""
+    """Return copies of one state for several contacts."""
     vertices, *load_point = state.polyline
     ends = len(vertices) * np.arange(1, count + 1)
     load_points = np.tile(load_point, (count, 1)).T

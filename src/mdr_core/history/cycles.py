@@ -63,8 +63,9 @@ def cycles(
 ) -> LoadCycles:
     """Return cycles of tangential load, the normal load constant or in phase with it.
 
-    From the mean normal load to the upper turning point (mean + normal amplitude, + amplitude),
-    then `count` times to the lower one (mean - normal amplitude, - amplitude) and back.
+    The path leads from the mean normal load to the upper turning point (mean + normal amplitude, +
+    amplitude), then `count` times to the lower turning point (mean - normal amplitude, - amplitude)
+    and back.
 
     Source: mdr-5, Eqs. (5.19), (5.20), (5.71); physics of the loop: notes, §10.
 
@@ -85,7 +86,7 @@ def cycles(
     Raises
     ------
     InputError : as for `solve`, and a normal amplitude outside 0 to the mean.
-    AccuracyError : a tangential load that is lost in rounding errors of the normal one.
+    AccuracyError : a tangential load below the rounding error of the normal load.
 
     Examples
     --------

@@ -1,17 +1,17 @@
 """Work of friction on each step, from the parts of the polylines that the slip front sweeps.
 
-On a step from P to P' the load point moves evenly. A spring slips from the moment at which it
-exceeds the load point in one of the sums, f or b, until the end of the step or the loss of contact.
-Its anchor moves by the decrease of this sum since then, under the friction n_P - n, which changes
-evenly. The work on the spring, over (mu E*)^2/G*, is
+On a step from P to P' the load point moves along a straight line. A spring slips from the moment at
+which it exceeds the load point in one of the sums, f or b, until the end of the step or the loss of
+contact. From that moment on its anchor moves by the decrease of this sum, under the friction n_P -
+n, which varies linearly. The work on the spring, over (mu E*)^2/G*, is
 
     M(n) = (decrease of the sum) (friction at first + friction at last)/2,
 
-and the work on all springs is int M(n) 2 dx. Both factors are linear in n between the vertices, the
-normal coordinate of P', and the place at which the path of P passes through the polyline. Beyond
-this place the other sum is exceeded first. In Bernstein moments of the springs the work is a sum of
-positive terms. Where forces are prescribed the identity holds with the reduced force in place of
-the depth and the measure |d(1/2x)| in place of 2 dx. Source: notes, §10.
+and the work on all springs is int M(n) 2 dx. Both factors are piecewise linear in n. Their breaks
+are the vertices, the normal coordinate of P', and the place at which the path of P crosses the
+polyline, beyond which the other sum is exceeded first. In Bernstein moments of the springs the work
+is a sum of positive terms. Where forces are prescribed the identity holds with the reduced force in
+place of the depth and the measure |d(1/2x)| in place of 2 dx. Source: notes, §10.
 """
 
 from typing import NamedTuple
@@ -24,12 +24,12 @@ from mdr_core.history.slip_memory import VertexTree
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.typing import Array, Indices
 
-# Numbers of a part in the kernel.
+# Number of values by which the kernel describes a part.
 _NUMBERS = 6
 
 
 class SweptParts(NamedTuple):
-    """Parts of straight segments that the slip front sweeps; m in all steps."""
+    """The m parts of straight segments that the slip front sweeps in all steps."""
 
     step: Indices
     fallen: Array
@@ -54,7 +54,7 @@ class SweptParts(NamedTuple):
         return upper, lower
 
     def divided(self, share: Array) -> "SweptParts":
-        """Return the parts, divided at a share of their length from the upper end, if inside."""
+        """Return the parts, each divided at a share of its length from the upper end, if inside."""
         at = np.flatnonzero((share > 0) & (share < 1))
         above = SweptParts._make(row[..., at] for row in self)
         first, rest = share[at] * above.run, (1 - share[at]) * above.run
@@ -89,7 +89,7 @@ def _work_on(moments: IntervalMoments, parts: SweptParts) -> tuple[Indices, Arra
     parts = parts.divided(np.where(passes, upper / np.where(passes, upper - lower, 1.0), 0.0))
     terms, low, length = _work(parts), parts.low, parts.run[0]
     if moments.over_forces:
-        # Prescribed forces do not exceed friction: work on the axis is rounding error.
+        # Prescribed forces do not exceed friction, so that work on the axis is rounding error.
         terms[0, low == 0] = 0.0
     moments = moments.part(parts.step)
     edges = moments.contact_coordinate(np.array([low, low + length]))

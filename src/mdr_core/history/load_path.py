@@ -1,6 +1,7 @@
 """Load path: from the given points to the load points of the slip memory.
 
-It starts from the unloaded bodies, or from the end of another path, whose state JSON can hold.
+A path starts from the unloaded bodies, or from the end of another path, whose state can be stored
+as JSON.
 
 Both loads vary linearly between two samples, in the plane in which the tangential control is exact:
 a displacement with the depth, a tangential force with the normal force. If the normal control
@@ -26,7 +27,7 @@ from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.validation import require_finite, require_not_negative, require_whole
 
-# Attributes that define a table, which has no parameters.
+# Attributes that define a table in place of parameters.
 _TABLE: Final = ("r", "values", "breaks", "uncertainty")
 
 
@@ -46,7 +47,7 @@ class SavedState(NamedTuple):
     polyline: Sequence[Sequence[float]]
     """Sums normal + anchor and normal - anchor of the vertices below the load point, from the axis.
 
-    None in separation.
+    The sums are empty in separation.
     """
 
     @classmethod
@@ -76,7 +77,7 @@ class SavedState(NamedTuple):
             return slip_memory.separated(normal, tangential)
         line = slip_memory.through(np.array(self.polyline), normal, tangential)
         growth = np.diff(line.vertices[:, :NORMAL], axis=0)
-        # By rounding a sum may decrease along a polyline.
+        # Rounding errors may let a sum decrease along a polyline.
         good = (growth.min(axis=1) >= -ROUNDING * normal) & (growth.max(axis=1) > 0)
         good[0] &= line.vertices[0, NORMAL] == 0
         if not good.all():
@@ -137,27 +138,27 @@ class SampledPath:
 
     @property
     def over_forces(self) -> bool:
-        """Normal coordinates are reduced forces: the tangential force is prescribed."""
+        """True if normal coordinates are reduced forces: the tangential force is prescribed."""
         return self.tangential_name == "tangential_force"
 
     @property
     def depth_prescribed(self) -> bool:
-        """The depth is prescribed, not the normal force."""
+        """True if the depth is prescribed, false for the normal force."""
         return self.normal_name == "indentation_depth"
 
     @property
     def mixed(self) -> bool:
-        """The controls are of different pairs, so that the normal control is converted."""
+        """True if the controls are of different pairs, so that the normal control is converted."""
         return self.over_forces == self.depth_prescribed
 
     @property
     def starts_straight(self) -> bool:
-        """The samples of the first step lie on the straight line of its point from zero load."""
+        """The samples of the first step lie on the straight line from zero load to its point."""
         return self.mixed and self.per_step > 1 and self.begin is UNLOADED
 
     @property
     def _continues(self) -> Flags:
-        """Samples that continue the straight line of the sample before, shape (n,)."""
+        """True for samples that continue the straight line to the sample before, shape (n,)."""
         flags = np.ones((self.normal_points.size - 1, self.per_step), dtype=bool)
         flags[:, 0] = False
         if self.mixed:
@@ -181,7 +182,8 @@ class SampledPath:
             loads = loads / self.start.e_star
         if not self.mixed:
             return loads
-        # Equal loads get equal coordinates: the last bit may depend on an element's position.
+        # Equal loads get equal coordinates; otherwise the last bit may depend on an element's
+        # position.
         load, index = np.unique(np.maximum(loads, 0.0), return_inverse=True)
         of_force = not self.depth_prescribed
         s = self.start.profile.coordinate_from_load(load, of_force=of_force)
@@ -210,12 +212,13 @@ class SampledPath:
         limit = np.maximum(normal, 0.0) if self.over_forces else normal
         if self.over_forces:
             self._require_equilibrium(limit, tangential)
-        # Tangential loads at the limit but for rounding errors are at the limit.
+        # A tangential load that differs from the limit by rounding errors alone is set to the
+        # limit.
         near = np.abs(np.abs(tangential) - limit) <= ROUNDING * limit
         return np.array([normal, np.where(near, np.copysign(limit, tangential), tangential)])
 
     def _require_equilibrium(self, limit: Array, tangential: Array) -> None:
-        """Raise InputError for a force above friction, or one that acts at a gap.
+        """Raise InputError for a tangential force above friction or on separated bodies.
 
         Parameters
         ----------
@@ -284,12 +287,12 @@ def build(
 
 
 def _along(points: Array, count: int) -> Array:
-    """Return the first point, and samples that divide each step to the next point evenly."""
+    """Return the first point, and the samples that divide each step to the next point evenly."""
     if count == 1:
         return points
     start, stop = points[:-1, None], points[1:, None]
     share = np.arange(1, count + 1)
-    # Two forces in proportion remain so up to rounding, even where they approach zero.
+    # Proportional forces stay proportional to rounding error, even where they approach zero.
     samples = start * ((count - share) / count) + stop * (share / count)
     return np.append(points[0], np.where(start == stop, stop, samples))
 
@@ -305,7 +308,7 @@ def _checked(axis: str, name: str, value: Array) -> Array:
 
 
 def saved(line: Polyline) -> list[list[float]]:
-    """Return the sums of the vertices below the load point, as `SavedState` has them."""
+    """Return the sums of the vertices below the load point, in the form of `SavedState`."""
     rows: list[list[float]] = line.vertices[:-1, :NORMAL].tolist()
     return rows
 

@@ -1,9 +1,9 @@
 """Sequential loops of load histories: the polyline after each step, and the path of the slip front.
 
-Every load point depends on the one before, so there is nothing for NumPy to vectorise. Cython
-compiles this file as it stands, with the C types of `slip_kernel.pxd`; uncompiled it gives the same
-bits, about a hundred times slower. One file holds all functions, since Cython inlines within a
-module only.
+Every load point depends on the previous one, so that NumPy cannot vectorise the loop. Cython
+compiles this file as it stands, with the C types of `slip_kernel.pxd`; uncompiled it returns
+bit-identical results, about a hundred times slower. One file holds all functions, since Cython
+inlines within a module only.
 """
 
 from mdr_core.history.slip_layout import NORMAL, SLOPE
@@ -26,8 +26,8 @@ class PolylineStack:
         V_0 ... V_k, C, P'   otherwise; k is the last vertex with f_k <= f' and b_k <= b'.
 
     The corner C is the place between V_k and V_k+1 at which the second of the two sums falls to
-    its value at P'. The other sum of C is its value on the segment; between C and P' it grows
-    alone. If the axis exceeds P' as well, all springs slip, and C lies on the axis.
+    its value at P'. The other sum of C has its value on the segment; between C and P' only this sum
+    grows. If the vertex on the axis exceeds P' as well, all springs slip, and C lies on the axis.
 
     Parameters
     ----------
@@ -43,7 +43,8 @@ class PolylineStack:
         self.y = y
         # Lowest place that the last step has changed.
         self.changed = top + 1
-        # The last step was straight and without slip, so that another one may continue it.
+        # True if the last step was straight and without slip, so that the next step may continue
+        # it.
         self.straight = False
 
     def run(
@@ -62,8 +63,8 @@ class PolylineStack:
         path : normal and tangential coordinate of the load points, shape (2, n).
         continues : see `move`, shape (n,).
         number : index of each vertex on the stack.
-        parent, vertices : parents, normal coordinates and slopes of the vertices on the stack;
-            receive the parent of every new vertex, -1 on the axis, and its coordinate and slope.
+        parent, vertices : parent (-1 on the axis), and normal coordinate and slope, of each vertex
+            on the stack. The loop adds the values of every new vertex.
         tops : receives the vertex of each load point, -1 in separation.
         """
         made = self.top + 1
@@ -111,8 +112,8 @@ class PolylineStack:
         Parameters
         ----------
         x, y : normal and tangential coordinate after the step; x <= 0 in separation.
-        continues : true if the step continues the straight line of the one before: without slip it
-            extends the last segment.
+        continues : true if the step continues the straight line of the previous step; without slip
+            it extends the last segment.
         """
         x0 = self.x
         y0 = self.y
@@ -142,7 +143,7 @@ class PolylineStack:
                 self.straight = True
 
     def _stick(self, deeper: float, further: float) -> None:
-        """Extend the polyline straight to the load point; one segment for one straight line."""
+        """Extend the polyline straight to the load point, by one segment for each straight line."""
         below = self.top
         if self.straight and below > 0:
             span = self.rows[below, NORMAL] - self.rows[below - 1, NORMAL]
@@ -158,7 +159,7 @@ class PolylineStack:
         self._extend(below, slope)
 
     def _slip(self, forward: float, backward: float) -> None:
-        """Cut the polyline where it exceeds the sums of the load point, and extend it to there."""
+        """Cut the polyline where it exceeds the sums of the load point, and extend it to that."""
         upper = self.top
         while upper > 0 and (
             self.rows[upper - 1, FORWARD] > forward or self.rows[upper - 1, BACKWARD] > backward
@@ -174,7 +175,7 @@ class PolylineStack:
             else:
                 self._put(0, -backward, backward, 0.0, 0.0)
         else:
-            # Lengths of the segment above the corner, of which the larger one decides.
+            # Two values of the length of the segment above the corner; the larger one decides.
             slope = self.rows[upper, SLOPE]
             by_forward = over_forward / (1 + slope) if over_forward > 0 and slope > -1 else 0.0
             by_backward = over_backward / (1 - slope) if over_backward > 0 and slope < 1 else 0.0

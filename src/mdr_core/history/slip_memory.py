@@ -16,8 +16,8 @@ V_0 ... V_m a straight load step to P leaves
 `slip_kernel.PolylineStack` is this recurrence.
 
 A corner takes its sums from load points, so that errors do not accumulate. Normal coordinates are
-depths where displacements are prescribed, and reduced normal forces where tangential forces are.
-Source: notes, §10.
+depths where displacements are prescribed, and reduced normal forces where tangential forces are
+prescribed. Source: notes, §10.
 """
 
 from collections.abc import Sequence
@@ -52,9 +52,9 @@ class Polyline(NamedTuple):
     vertices: Array
     """Vertices, with the columns of `slip_layout`, shape (n, 4); none in separation."""
     normal: float
-    """Normal coordinate of the load point, exactly as it was given; <= 0 in separation."""
+    """Normal coordinate of the load point, an exact copy of the input; <= 0 in separation."""
     tangential: float
-    """Tangential coordinate of the load point, exactly as it was given."""
+    """Tangential coordinate of the load point, an exact copy of the input."""
 
     @property
     def in_contact(self) -> bool:
@@ -89,7 +89,7 @@ class VertexTree:
 
     @cached_property
     def span(self) -> Array:
-        """Length of the segment below each vertex in the normal coordinate, any on the axis."""
+        """Length of the segment below each vertex (normal coordinate); arbitrary on the axis."""
         return np.maximum(self.normal - self.normal[self.parent], 0.0)
 
     @property
@@ -171,7 +171,7 @@ def follow(start: Polyline, points: LoadPoints) -> tuple[VertexTree, Polyline]:
 
 
 def moved(line: Polyline, normal: float, tangential: float) -> tuple[Polyline, int]:
-    """Return the polyline after one straight step, and how many vertices it left unchanged."""
+    """Return the polyline after one straight step, and the number of unchanged vertices."""
     rows, stack = _stacked(line, 1)
     stack.move(normal, tangential, continues=False)
     return Polyline(_polyline_on(stack, rows), normal, tangential), stack.changed
@@ -215,7 +215,7 @@ def separated(normal: float, tangential: float) -> Polyline:
 
 
 def as_tree(line: Polyline, following: Polyline | None = None) -> VertexTree:
-    """Return one polyline as a tree without branches, and the step to the following one."""
+    """Return one polyline as a tree without branches, and the step to the next polyline."""
     count, path = len(line.vertices), np.array((following or line)[1:])[:, None]
     vertices, chain = line.vertices[:, NORMAL:].T, np.arange(-1, count, dtype=np.intp)
     return VertexTree(chain[:-1], vertices, chain[-1:], (count - 1, *line[1:]), path)

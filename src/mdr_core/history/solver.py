@@ -23,7 +23,7 @@ from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
 from mdr_core.validation import extremes, not_negative, only_one
 
-# Place of the normal load from which a history starts.
+# Location in the request of the normal load from which a history starts.
 _BEGIN: Final = ("initial_state", "normal")
 
 
@@ -55,7 +55,7 @@ class LoadHistory(validity.ContactResults):
         """Normal contact of every sample, with zero load in separation; one if it is constant."""
         load = np.maximum(self.path.normal, 0.0)
         least, most = extremes(load)
-        # A single load takes less time than several.
+        # A constant load is solved once, which takes less time than many equal loads.
         given = {self.path.normal_name: number(most) if least == most else load}
         return normal.solve(self.path.start.profile, self.e_star, **given)
 
@@ -102,8 +102,8 @@ class LoadHistory(validity.ContactResults):
     def tangential_displacement(self) -> Array:
         """u_x = mu (E*/G*) sum k_i (w_i - w_i-1) over the segments [length].
 
-        Source: notes, §10. After full slip under a prescribed force, which leaves it undetermined,
-        it counts from the axis.
+        Source: notes, §10. Full slip under a prescribed force leaves the displacement undetermined;
+        from then on it is counted from the axis.
         """
         if self.path.over_forces:
             return self.path.start.displacement_ratio * self.results.displacement
@@ -128,7 +128,7 @@ class LoadHistory(validity.ContactResults):
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
         """Slip regime: "no_contact", "stick", "partial_slip" or "full_slip".
 
-        Determined by the springs at their friction limit: none, the outermost, or all.
+        It depends on the springs at their friction limit: none, the outermost, or all.
         """
         return np.array(REGIMES)[self.results.regime]
 
@@ -152,7 +152,7 @@ class LoadHistory(validity.ContactResults):
 
     @property
     def final_state(self) -> dict[str, Any]:
-        """State at the end, with which `solve` carries the history on; JSON can hold it."""
+        """State at the end, from which `solve` continues the history; it can be stored as JSON."""
         return SavedState(
             load_path.digest(self.path.start, self.path.normal_name, self.path.tangential_name),
             float(self.path.normal[-1]),
@@ -163,7 +163,7 @@ class LoadHistory(validity.ContactResults):
         )._asdict()
 
     def _over_depths(self, span: Array, line: Polyline) -> Polyline:
-        """Return the polyline over depths that has the slopes of a polyline over reduced forces."""
+        """Return the polyline over depths with the slopes of a polyline over reduced forces."""
         if not line.in_contact:
             return slip_memory.separated(min(float(self.indentation_depth[-1]), 0.0), 0.0)
         return slip_memory.stacked(span, slip_memory.as_tree(line).slope[1:])
@@ -188,8 +188,8 @@ class LoadHistory(validity.ContactResults):
     def rounding(self) -> float:
         """Relative rounding error of steps of the tangential load and of the slip front [1].
 
-        Both have the rounding error of the larger coordinate. The front decides the energy that the
-        path adds to the dissipated energy at its start.
+        Both have the rounding error of the larger coordinate. The error of the front passes to the
+        energy that the path dissipates.
         """
         normal, tangential = np.maximum(self.path.coordinates[0], 0.0), self.path.coordinates[1]
         least, most = sorted([float(normal.max()), float(np.abs(tangential).max())])
@@ -198,7 +198,7 @@ class LoadHistory(validity.ContactResults):
         total, error = float(self.dissipated_energy[-1]), 0.0
         if least > 0:
             error = most / least
-        # Loads that grow in the ratio of friction move the front by rounding errors alone.
+        # If the loads grow in the ratio of friction, only rounding errors move the front.
         if travel > ROUNDING * most and total > 0:
             error += most / travel * (1 - self.path.begin.dissipated_energy / total)
         # A normal coordinate that is converted has the rounding error of an inverse.
@@ -215,7 +215,7 @@ class LoadHistory(validity.ContactResults):
 
     @property
     def slips_from(self) -> Array:
-        """Least radius with slip [length], in full slip alone; else infinite."""
+        """Least radius with slip [length] in full slip; infinite otherwise."""
         return np.where(self.regime == "full_slip", 0.0, np.inf)
 
     @property
@@ -240,13 +240,13 @@ def solve(
     """Return the results of a load history that starts from the unloaded bodies.
 
     Between two samples both loads vary linearly: depth and displacement where a displacement is
-    prescribed, normal and tangential force where a tangential force is. Every such path is solved
-    exactly. A negative depth separates the bodies and erases the slip memory.
+    prescribed, normal and tangential force where a tangential force is prescribed. Every such path
+    is solved exactly. A negative depth separates the bodies and erases the slip memory.
 
     A depth with a tangential force, or a normal force with a displacement, is prescribed at the
-    samples. Where both change on a step, more samples follow the curve on which they vary linearly.
-    The first step is one straight line from zero load, because under a tangential force there is no
-    equilibrium on the curve next to first contact.
+    samples. Where both change on a step, more samples approach the curve on which both vary
+    linearly. The first step is one straight line from zero load, because under a tangential force
+    there is no equilibrium on the curve next to first contact.
 
     Source: mdr-5, Eqs. (5.4)-(5.9), (5.19)-(5.23), (5.71); notes, §10.
 
@@ -259,8 +259,8 @@ def solve(
     tangential_displacement, tangential_force : exactly one, the points [length], [force] of either
         sign, shape (n,). One of the two may be a single value for all points.
     samples_per_step : samples from each point to the next, evenly spaced in the normal load, >= 1.
-    initial_state : `final_state` of a history of this contact and these controls, to be carried on:
-        a path in pieces has the results of the path as a whole.
+    initial_state : `final_state` of an earlier history of this contact under these controls. A path
+        in pieces has the results of the whole path.
 
     Returns
     -------
@@ -306,9 +306,9 @@ def solve(
 
 
 def _require_solvable(path: SampledPath) -> None:
-    """Raise InputError unless the normal contact has a solution at the start and all samples.
+    """Raise InputError unless the normal contact has a solution at the start and at all samples.
 
-    It has, if it has one under the largest load and under the smallest above zero.
+    It suffices that the largest load and the smallest load above zero have a solution.
     """
     loads = path.normal_loads
     least, most = extremes(loads)

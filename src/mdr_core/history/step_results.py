@@ -25,13 +25,13 @@ from mdr_core.history.slip_memory import LoadPoints, Polyline, VertexTree
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices, Numbers
 
-# Steps whose vertices are kept for later results, which take 40 MB. Those of more steps take longer
-# to be stored and fetched than to be computed again, and their memory has to have a bound.
+# Number of steps whose vertices are kept for later results, which takes 40 MB. The vertices of more
+# steps are computed again: that is faster than storing them, and memory is bounded.
 _KEPT: Final = 262_144
 # Slip regimes, in the order of their codes.
 REGIMES: Final = ("no_contact", "stick", "partial_slip", "full_slip")
-# Up to this part of its normal coordinate a segment is so short that a difference of conjugates
-# would lose more than three of sixteen digits.
+# If a segment is shorter than this part of its normal coordinate, a difference of conjugates loses
+# more than three of sixteen digits.
 SHORT: Final = 2e-3
 
 
@@ -54,7 +54,7 @@ class TractionVertices:
 
     @cached_property
     def conjugate_step(self) -> Array:
-        """Growth of the conjugate from the parent of each vertex."""
+        """Growth of the conjugate from the parent of each vertex to the vertex."""
         tree, conjugate = self.tree, self.conjugate
         step = np.maximum(conjugate - conjugate[tree.parent], 0.0)
         short = np.flatnonzero(tree.span < SHORT * tree.normal)
@@ -70,7 +70,7 @@ class TractionVertices:
 
     @cached_property
     def anchor(self) -> Array:
-        """Growth of the anchor from the axis to each vertex, a depth [length]."""
+        """Growth of the anchor from the axis to each vertex [length]."""
         return self._summed(conjugate=self.moments.over_forces)
 
     def _summed(self, *, conjugate: bool) -> Array:
@@ -110,13 +110,13 @@ def variance_growth(
 ) -> Array:
     """Return the growth of V = int (anchor - mean)^2 dx over 0 < x < a along segments [length^3].
 
-    By the theorem of parallel axes the integral about another anchor is larger by a m^2, where m is
-    its distance from the mean. V does not depend on the load point and grows along the polyline by
-    squares: the energy of every traction is a sum of squares.
+    By the parallel axis theorem the integral about another anchor is larger by a m^2, where m is
+    the distance of that anchor from the mean. V does not depend on the load point. It grows along
+    the polyline by squares, so that the energy of every traction is a sum of squares.
 
     Parameters
     ----------
-    moments : those over intervals of depth.
+    moments : moments over intervals of depth.
     low, span, growth : lower end, length in depth, and growth of the anchor, shape (n,).
     ends : contact coordinates of both ends, shape (2, n).
     shear : F_x/(mu E*) of the lower end as the load point.
@@ -127,7 +127,8 @@ def variance_growth(
     inner, outer = moments.profile.contact_radius(ends)
     outer = np.where(outer > 0, outer, 1.0)
     some_width, some_inner = np.where(width > 0, width, 1.0), np.where(inner > 0, inner, 1.0)
-    # Anchors of a segment: mean above its lower end in parts of their growth, and variance.
+    # Anchors of a segment: mean above the lower end, relative to the growth of the anchor, and
+    # variance.
     mean, spread = (last + middle / 2) / some_width, first * last - np.square(middle) / 4
     apart = growth * mean + np.where(inner > 0, shear / (2 * some_inner), 0.0)
     return np.asarray(
@@ -160,7 +161,7 @@ def decides_regime(codes: Indices, normal: Array, deeper: Array, further: Array)
 
 
 class _Block(NamedTuple):
-    """Some of the steps, with the results at their vertices, and the polyline after them."""
+    """Results at the vertices of a range of steps, and the polyline after these steps."""
 
     vertices: TractionVertices
     line: Polyline
@@ -170,7 +171,8 @@ class _Block(NamedTuple):
 class StepResults:
     """Results after each of a sequence of straight load steps, in reduced units.
 
-    Each is computed on first use; the slip memory is followed once for all, up to `_KEPT` steps.
+    Each result is computed on first use. Up to `_KEPT` steps the slip memory is followed once for
+    all results.
     """
 
     moments: IntervalMoments

@@ -40,9 +40,9 @@ NORMAL_QUANTITIES: Final = (
     "normal_stiffness",
     "elastic_energy",
 )
-# Fields of a contact, likewise.
+# Fields of a contact, as `Profile.closed_forms` names them.
 FIELDS: Final = ("pressure", "shear_stress", "slip", "normal_displacement")
-# Attributes that completion offers, beside the parameters and those of a table.
+# Attributes that completion offers, in addition to the parameters and the attributes of a table.
 _SHAPE: Final = ("f", "df", "g", "dg", "r", "breaks", "domain", "infinite_pressure_radii")
 _FOR_USERS: Final = ("kind", "formula", "closed_forms", "notices", *_SHAPE)
 _NO_BREAKS: Final = np.empty(0)
@@ -51,9 +51,9 @@ _NO_BREAKS: Final = np.empty(0)
 class Profile(ABC):
     """Rigid axisymmetric profile f(r) with f(0) = 0 and its equivalent profile g(x).
 
-    The contact edge is described by the *contact coordinate* of the kind, a number in which
-    radius, depth and force are all accurate: the radius a, or its distance a - b from a flat of
-    radius b, next to which a does not resolve them. It is zero at zero load.
+    The contact edge is described by the *contact coordinate* of the kind, a number from which
+    radius, depth and force are all accurate: the radius a, or the distance a - b from a flat of
+    radius b, next to which a does not resolve depth and force. It is zero at zero load.
 
     A kind defines f, f', g, g', F_N/E* and its closed forms. Every other method has a general
     implementation here. Parameters may be arrays over the cases of a sweep; they broadcast with the
@@ -62,9 +62,9 @@ class Profile(ABC):
 
     kind: ClassVar[str]
     formula: ClassVar[str]
-    # Quantities in closed form; the others need quadrature or iteration.
+    # Quantities in closed form; all others need quadrature or iteration.
     closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
-    # Stick edges by u_x/u_max and by F_x/(mu F_N), in contact coordinates, where they are closed.
+    # Closed forms of the stick edge in contact coordinates, by u_x/u_max and by F_x/(mu F_N).
     stick_ratios: ClassVar[StickRatios | None] = None
     # Bound on the relative rounding error of the closed forms.
     rounding: Parameter = 3e-14
@@ -77,7 +77,7 @@ class Profile(ABC):
             require_positive(("profile", name), getattr(self, name))
 
     def __dir__(self) -> Iterable[str]:
-        """Return the names for users; those of the solver are left out of completion."""
+        """Return the names that completion offers: attributes for users, not for solvers."""
         shown = {*self.parameters, *_FOR_USERS}
         return [name for name in super().__dir__() if name in shown or name.startswith("__")]
 
@@ -155,7 +155,7 @@ class Profile(ABC):
     def domain(self) -> Parameter:
         """Radius up to which the profile is defined and admissible [length].
 
-        Where there is an end, radii are contact coordinates.
+        In a profile with an end, contact coordinates are radii.
         """
         return inf
 
@@ -173,13 +173,13 @@ class Profile(ABC):
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         """Radii at which the pressure of every contact that contains them is infinite [length].
 
-        In a sweep one for each case, infinite for a case that has none.
+        A sweep has one radius for each case, infinite for a case that has none.
         """
         return ()
 
     @property
     def pole(self) -> Parameter:
-        """Contact coordinate at which g', continued past its break, is infinite; inf for none."""
+        """Coordinate of the pole of the continued g'; inf if there is none."""
         return inf
 
     @property
@@ -189,7 +189,7 @@ class Profile(ABC):
 
     @property
     def tip_pressure(self) -> Parameter:
-        """Limit of mean pressure / E* as the load vanishes [1]: zero for smooth and blunt tips."""
+        """Limit of mean pressure/E* as the load vanishes [1]: zero for smooth and blunt tips."""
         return 0.0
 
     @property
@@ -209,7 +209,7 @@ class Profile(ABC):
 
     @property
     def steepness(self) -> float:
-        """Highest power that g resembles over part of the contact, which sets the resolution."""
+        """Largest local exponent of g; it sets the number of nodes."""
         return STEEPNESS
 
     @property
@@ -217,22 +217,22 @@ class Profile(ABC):
         """Lower bound of the exponent of g at the axis, at most 1."""
         return 1.0
 
-    # The contact coordinate.
+    # Methods over the contact coordinate.
 
     @property
     def first_radius(self) -> Parameter:
-        """Contact radius at zero load: that of a flat, else 0 [length]."""
+        """Contact radius at zero load: the radius of a flat, 0 without one [length]."""
         return self.contact_radius(number(0.0))
 
     @cached_property
     def largest_loads(self) -> tuple[Parameter, Parameter] | None:
-        """Depth [length] and F_N/E* [length^2] at the end of the domain; None for no end."""
+        """Depth [length] and F_N/E* [length^2] at the end of the domain; None without an end."""
         end = number(1.0) * self.domain
         return None if some(end == inf) else (self.depth(end), self.reduced_force(end))
 
     @property
     def scale(self) -> Parameter:
-        """Characteristic contact coordinate, such as that of a break."""
+        """Characteristic contact coordinate, such as the coordinate of a break."""
         raise NotImplementedError(f"a {self.kind} has no scale, because its inverses are closed")
 
     @property
@@ -248,7 +248,7 @@ class Profile(ABC):
         """Contact radius a [length]."""
         return coordinate
 
-    # The normal contact.
+    # Methods of the normal contact.
 
     def depth(self, coordinate: Array) -> Array:
         """Indentation depth d = g(a) [length]."""
@@ -259,13 +259,13 @@ class Profile(ABC):
         return self.dg(coordinate)
 
     def depth_slope_beyond(self, coordinate: Array, start: Array, past: Array) -> Array:
-        """`depth_slope` at start + past, as accurate as `past` beyond a break at `start`.
+        """`depth_slope` at start + past, with the relative accuracy of `past` beyond a break.
 
         Parameters
         ----------
         coordinate : start + past.
         start : contact coordinate of the break below.
-        past : distance from it.
+        past : distance from that break.
         """
         return self.depth_slope(coordinate)
 
@@ -315,10 +315,11 @@ class Profile(ABC):
         """Contact coordinate at which a load has a value within the domain."""
         scale = number(1.0) * self.scale
         with np.errstate(all="ignore"):
-            # The first approximation follows the power that the load is at the scale.
+            # The first approximation takes the load as a power of the coordinate, fitted at the
+            # scale.
             at_scale = load(scale)
             ratio = np.log(target / at_scale) * (at_scale / (scale * slope(scale)))
-            # Where a load hardly rises there, its power leads out of the range of doubles.
+            # Where a load hardly rises at the scale, this power leaves the range of doubles.
             start = scale * np.exp(np.clip(ratio, -LOG_RANGE, LOG_RANGE))
             start = where(start > 0, start, scale)
         low, high = (full(end, start) for end in (0.0, self.domain))
@@ -330,10 +331,10 @@ class Profile(ABC):
         start = where(high < start, high, start)
         return invert(sloped, target, start, low, high, self.kind)
 
-    # The slip annulus.
+    # Methods over the slip annulus.
 
     def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
-        """Difference F(a)/E* - F(c)/E* where it is closed without cancellation, else None.
+        """(F(a) - F(c))/E* if there is a closed form free of cancellation, else None.
 
         Parameters
         ----------
@@ -344,20 +345,20 @@ class Profile(ABC):
         return None
 
     def depth_step(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
-        """Difference d(a) - d(c) where it is closed without cancellation, else None.
+        """d(a) - d(c) if there is a closed form free of cancellation, else None.
 
         Parameters: see `force_step`.
         """
         return None
 
     def interval_moments(self, span: Array, ends: Array, *, over_forces: bool) -> Array | None:
-        """Moments of `IntervalMoments` where they are closed for every interval, else None.
+        """Moments of `IntervalMoments` if a closed form holds for every interval, else None.
 
         Parameters
         ----------
         span : lengths of the intervals in the normal coordinate, > 0, shape (m,).
         ends : both ends in the contact coordinate, shape (2, m).
-        over_forces : the normal coordinate is the reduced force, not the depth.
+        over_forces : True if the normal coordinate is the reduced force, false for the depth.
         """
         return None
 
@@ -374,7 +375,7 @@ class Profile(ABC):
 
         Parameters
         ----------
-        x, s : radii, and their contact coordinates beyond the branches' bases [length], (n, m).
+        x, s : radii, and contact coordinates from the base of each branch [length], shape (n, m).
         owner : index of the branch of each column, shape (m,).
         """
         found = np.empty_like(x)
@@ -403,7 +404,7 @@ class Profile(ABC):
         ----------
         c, r : stick radii and radii, 0 <= c <= r [length], shape (m,).
         """
-        # Next to the axis arccos(x/r) = pi/2 - x/r, of which the integrals are closed.
+        # Next to the axis arccos(x/r) = pi/2 - x/r, for which the integrals are closed.
         near = np.maximum(c, np.cbrt(EPS) * r)
         value = slope_integral(self.branches, near, r, r, arccosine)[0]
         if np.any(near > c):
@@ -420,9 +421,9 @@ class Profile(ABC):
         Parameters
         ----------
         a, r : contact radius and radii r >= a [length], shape (m,).
-        coordinate : contact coordinate of a, which may be the more accurate of the two.
+        coordinate : contact coordinate of a, which may be more accurate than a.
         """
-        # Next to the axis arcsin(x/r) = x/r, of which the integral is closed.
+        # Next to the axis arcsin(x/r) = x/r, for which the integral is closed.
         near = np.minimum(a, np.cbrt(EPS * r * r * a))
         value = slope_integral(self.branches, near, a, r, arcsine)[0]
         value += self.force_within(near) / (2 * r)
@@ -436,8 +437,8 @@ class Profile(ABC):
     def falls_from_axis(self, coordinate: Array) -> Flags:
         """True where the pressure is known to fall from the axis to the contact edge.
 
-        It does where g'(x)/x does not increase, and where its increase is slight enough.
-        Source: notes, §7.
+        The pressure falls if g'(x)/x does not increase, or if its increase is small enough. Source:
+        notes, §7.
         """
         return coordinate < 0
 
@@ -469,12 +470,12 @@ class Profile(ABC):
     def pressure_kernel_at(self, annulus: Annulus, coordinate: Array) -> Array:
         """Stress integral at places given as contact coordinates, zero at the edge [1].
 
-        Beyond a flat a radius has fewer digits than the coordinate.
+        Beyond a flat a radius is less accurate than its contact coordinate.
 
         Parameters
         ----------
         annulus : see `pressure_kernel`.
-        coordinate : contact coordinates up to that of a, shape (m,).
+        coordinate : contact coordinates up to the coordinate of a, shape (m,).
         """
         r, values = self.contact_radius(coordinate), np.zeros(coordinate.shape)
         inside = r < self.contact_radius(annulus.outer)

@@ -12,7 +12,7 @@ import numpy as np
 from mdr_core.elementwise import is_number, piecewise
 from mdr_core.typing import Array, Parameter
 
-# Below it a power series replaces the difference, which loses more than four bits there.
+# Below this argument a power series replaces the difference, which would lose more than four bits.
 _THRESHOLD: Final = 0.4
 # Coefficients in u = z^2, from the highest power on, of (1 - arctan(z)/z)/u and of
 # (cosh(z) - sinh(z)/z)/u: the terms left out are below rounding error.
@@ -21,7 +21,7 @@ _TANH: Final = [2 * k / factorial(2 * k + 1) for k in range(7, 0, -1)]
 
 
 def _series(coefficients: Sequence[float], u: Any) -> Any:
-    # Python's own numbers have the same digits in a third of the time.
+    # Python floats give bit-identical results in a third of the time.
     u, value = u.item() if is_number(u) else u, 0.0
     for coefficient in coefficients:
         value = value * u + coefficient

@@ -1,4 +1,4 @@
-"""Paraboloid with a flatter parabolic cap, as worn at the tip."""
+"""Paraboloid with a flatter parabolic cap, as wear leaves it."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +15,7 @@ from mdr_core.typing import Array, Flags, Parameter
 
 @dataclass(frozen=True)
 class CappedParaboloid(Tipped):
-    """Paraboloid r^2/(2 R1) up to b, beyond it with k (r^2 - b^2)/2 added, k = 1/R2 - 1/R1 >= 0.
+    """Paraboloid r^2/(2 R1), plus k (r^2 - b^2)/2 beyond r = b, with k = 1/R2 - 1/R1 >= 0.
 
     With s = sqrt(x^2 - b^2), zero up to b, g(x) = x^2/R1 + k x s and
     F_N(a)/E* = 4a^3/(3 R1) + (2/3) k s (2a^2 + b^2).
@@ -25,8 +25,8 @@ class CappedParaboloid(Tipped):
     ----------
     cap_radius : b [length].
     tip_radius : radius of curvature R1 of the cap [length].
-    radius : radius of curvature R2 <= R1 beyond it [length]. With R2 > R1 the slope would drop at
-        b, and the pressure there would fall below zero.
+    radius : radius of curvature R2 <= R1 beyond the cap [length]. R2 > R1 means a downward jump of
+        the slope at b, and thus a negative pressure.
     """
 
     cap_radius: Parameter

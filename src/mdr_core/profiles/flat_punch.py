@@ -17,8 +17,8 @@ from mdr_core.typing import Array, Parameter
 class FlatPunch(Profile):
     """Flat punch with a vertical edge.
 
-    The contact coordinate is the depth, at which springs under the edge would come into contact:
-    under a tangential load the part of it up to c sticks, at one radius with the rest.
+    The contact coordinate is the depth, because all springs of the punch are at one radius. Under a
+    tangential load the part of the depth up to c sticks.
 
     Source: mdr-5, Eqs. (5.31), (5.33); notes, §2.
 
@@ -94,7 +94,7 @@ class FlatPunch(Profile):
         return self.depth(width)
 
     def interval_moments(self, span: Array, ends: Array, *, over_forces: bool) -> Array:
-        """Zero: the contact radius is constant. Parameters: see `Profile`."""
+        """Zero, because the contact radius is constant. Parameters: see `Profile`."""
         return np.zeros((3, span.size))
 
     def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
@@ -105,7 +105,7 @@ class FlatPunch(Profile):
         return annulus.width / (np.pi * np.sqrt((self.radius - radius) * (self.radius + radius)))
 
     def slip_integral(self, c: Array, r: Array) -> Array:
-        """Zero: all springs slip at once. Parameters: see `Profile`."""
+        """Zero, because all springs slip at once. Parameters: see `Profile`."""
         return np.zeros(r.shape)
 
     def outer_displacement(self, a: Array, r: Array, coordinate: float) -> Array:

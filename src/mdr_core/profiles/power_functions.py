@@ -35,12 +35,12 @@ def raised(base: Parameter, exponent: Parameter) -> Array:
 
 
 def power(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
-    """Return C r^n; overflow is up to the caller, whose sum of terms takes one `np.errstate`."""
+    """Return C r^n; the caller handles overflow, with one `np.errstate` for a sum of terms."""
     return coefficient * raised(r, exponent)
 
 
 def power_slope(coefficient: Parameter, r: Array, exponent: Parameter) -> Array:
-    """Return C n r^(n-1), infinite at r = 0 for n < 1; overflow as for `power`."""
+    """Return C n r^(n-1), infinite at r = 0 for n < 1; the caller handles overflow."""
     return coefficient * exponent * raised(r, exponent - 1)
 
 
@@ -66,31 +66,32 @@ def kappa(exponent: Parameter) -> Array:
     return np.pi / inverse
 
 
-# c/a and 1 - c/a from the load over that of full slip, and from 1 less that, all accurate [1].
+# c/a and 1 - c/a as functions of q and 1 - q, where q is the load divided by the full-slip load
+# [1].
 _StickRatio = Callable[[Array, Array], tuple[Array, Array]]
 StickRatios = tuple[_StickRatio, _StickRatio]
-"""Under a displacement and under a force."""
+"""Closed form under a displacement and under a force."""
 
 
 def linear_stick(ratio: Array, rest: Array) -> tuple[Array, Array]:
-    """Return c/a and 1 - c/a where c/a = rest = 1 - ratio."""
+    """Return c/a and 1 - c/a for c/a = rest = 1 - ratio."""
     return rest, ratio
 
 
 def square_stick(ratio: Array, rest: Array) -> tuple[Array, Array]:
-    """Return c/a and 1 - c/a where (c/a)^2 = rest = 1 - ratio."""
+    """Return c/a and 1 - c/a for (c/a)^2 = rest = 1 - ratio."""
     k = np.sqrt(rest)
     return k, ratio / (1 + k)
 
 
 def cubic_stick(ratio: Array, rest: Array) -> tuple[Array, Array]:
-    """Return c/a and 1 - c/a where (c/a)^3 = rest = 1 - ratio."""
+    """Return c/a and 1 - c/a for (c/a)^3 = rest = 1 - ratio."""
     k = np.cbrt(rest)
     return k, ratio / (1 + k * (1 + k))
 
 
 def power_stick(exponent: Parameter, ratio: Array, rest: Array) -> tuple[Array, Array]:
-    """Return c/a and 1 - c/a where (c/a)^exponent = rest = 1 - ratio. Source: notes, §4."""
+    """Return c/a and 1 - c/a for (c/a)^exponent = rest = 1 - ratio. Source: notes, §4."""
     with np.errstate(divide="ignore"):
         exact = where(ratio < 0.5, np.log1p(-np.minimum(ratio, 0.5)), np.log(rest))
     e = exact / exponent

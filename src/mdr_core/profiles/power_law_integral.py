@@ -1,4 +1,4 @@
-"""Quadrature of densities that are powers of the place, near zero and far from it."""
+"""Quadrature of densities that are powers of s near zero and in the far field."""
 
 from collections.abc import Callable
 
@@ -14,15 +14,16 @@ from mdr_core.validation import extremes
 def power_law_integral(density: Callable[[Array], Array], upper: Array, scale: Parameter) -> Array:
     """Return int_0^upper density(s) ds of a positive density that is a power of s at either end.
 
-    s = scale sinh(w) resolves it also where s is much larger than the scale; the integrand grows at
-    most like exp(5 w).
+    The substitution s = scale sinh(w) resolves s far above the scale as well; the integrand grows
+    at most like exp(5 w).
     """
     top = np.arcsinh(upper / scale)
     if not some(top):
         return top
     # On the axis a density may be 0/0.
     span = where(top > 0, top, EPS)
-    # Every load has its own pieces, summed in order: its result does not depend on other loads.
+    # Every load has its own pieces, summed in order, so that its result does not depend on other
+    # loads.
     count = where(top > PIECE, np.ceil(top / PIECE), 1.0)
     nodes, weights = gauss_legendre(NODES)
     shares = ((1 - nodes) / 2).reshape(-1, *(1,) * top.ndim)
@@ -30,7 +31,8 @@ def power_law_integral(density: Callable[[Array], Array], upper: Array, scale: P
     for piece in range(int(extremes(count)[1])):
         fraction = (piece + shares) / count
         if piece:
-            # Nodes of loads with fewer pieces do not count, and stay off the axis.
+            # Surplus nodes of loads with fewer pieces have no weight; they stay off the axis, where
+            # a density may be undefined.
             fraction = np.where(piece < count, fraction, 0.5)
         w = span - fraction * span
         values = density(scale * np.sinh(w)) * np.cosh(w)

@@ -1,7 +1,7 @@
-"""Zeros of sums of powers whose terms have either sign.
+"""Zeros of sums of powers with positive and negative terms.
 
-Sizes and radii are logarithms here, because steep powers of ordinary radii leave the range of
-doubles.
+Coefficients and radii are stored as logarithms, because steep powers of ordinary radii leave the
+range of doubles.
 """
 
 from collections.abc import Callable, Iterable
@@ -15,7 +15,7 @@ from mdr_core.doubles import LOG_RANGE
 
 
 class LogTerm(NamedTuple):
-    """A term sign exp(size) r^exponent."""
+    """Term sign exp(size) r^exponent of a sum."""
 
     sign: float
     size: float
@@ -45,22 +45,23 @@ def first_negative_radius(terms: LogTerms) -> float:
 
 
 def _scaled_sum(terms: LogTerms, u: float) -> float:
-    """The sum at r = exp(u) over its largest term."""
+    """Sum at r = exp(u), divided by its largest term."""
     logs = [term.size + term.exponent * u for term in terms]
     top = max(logs)
     return sum(exp(part - top) * term.sign for part, term in zip(logs, terms, strict=True))
 
 
 def _log_roots(terms: LogTerms) -> list[float]:
-    """All u where the sum vanishes and changes sign, ascending.
+    """All zeros u at which the sum changes sign, ascending.
 
-    Divided by its lowest power and differentiated, the sum loses one term. By Rolle's theorem it
-    is monotone between the roots of that derivative, so each interval holds at most one root.
+    Division by its lowest power and differentiation remove one term of the sum. By Rolle's theorem
+    it is monotone between the roots of that derivative, so each interval holds at most one root.
     """
     if len(terms) == 1:
         return []
     lowest = terms[0].exponent
-    # Multiplied by the lowest power again, which changes neither the roots nor the exponents.
+    # The derivative is multiplied by the lowest power again, which keeps its roots and the
+    # exponents.
     derivative = tuple(
         LogTerm(sign, size + log(exponent - lowest), exponent) for sign, size, exponent in terms[1:]
     )

@@ -259,7 +259,7 @@ class Power(Profile):
 
     @property
     def rounding(self) -> Parameter:  # type: ignore[override]  # a constant of most kinds
-        # r^n carries n times the rounding error of the scaled radius.
+        # r^n has n times the relative rounding error of the scaled radius.
         return 2e-14 + 8e-15 * self.exponent
 
     @property

@@ -35,7 +35,7 @@ class PowerTerm:
 
 @dataclass(frozen=True)
 class Series(Profile):
-    """Sum of powers f = sum C_i r^n_i; g and F_N/E* are the sums of those of `Power`.
+    """Sum of powers f = sum C_i r^n_i; g and F_N/E* are sums over its terms.
 
     With negative terms the profile ends where f' or g' first falls to zero (notes, §3); contacts
     that reach there are rejected. Source: mdr-5, Eq. (5.24), superposed.
@@ -77,7 +77,7 @@ class Series(Profile):
 
     @cached_property
     def _powers(self) -> tuple[tuple[float, float], ...]:
-        """(coefficient, exponent), ascending in the exponent, equal ones added."""
+        """(coefficient, exponent) of each term, by exponent; equal exponents are merged."""
         merged: dict[float, float] = {}
         for term in self.terms:
             merged[term.exponent] = merged.get(term.exponent, 0.0) + term.coefficient
@@ -95,7 +95,7 @@ class Series(Profile):
 
     @cached_property
     def domain(self) -> float:
-        # f' and g', times the radius.
+        # f' and g' are multiplied by the radius.
         slope_f = log_terms(self._powers, lambda n: n)
         slope_g = log_terms(self._powers, lambda n: n * float(kappa(n)))
         return min(first_negative_radius(slope_f), first_negative_radius(slope_g))
@@ -105,7 +105,7 @@ class Series(Profile):
         return 4e-14 + 8e-15 * max(n for _, n in self._powers)
 
     def rounding_at(self, coordinate: Array) -> Parameter:
-        """With the cancellation of terms of either sign, in depth and force. See `Profile`."""
+        """The bound includes cancellation between positive and negative terms. See `Profile`."""
         if self._positive:
             return self.rounding
         terms = np.array(
@@ -117,14 +117,14 @@ class Series(Profile):
 
     @property
     def scale(self) -> Parameter:
-        """Radius at which the terms of lowest and highest exponent are about equal."""
+        """Radius at which the terms of the lowest and the highest exponent are about equal."""
         (c, n), (k, m) = self._powers[0], self._powers[-1]
         crossing = (log(abs(c)) - log(abs(k))) / max(m - n, 0.5)
-        # Nearly equal exponents leave it undetermined.
+        # Nearly equal exponents leave the radius undetermined.
         return exp(min(max(crossing, -LOG_RANGE), LOG_RANGE))
 
     def _total(self, parts: Iterable[Array], factor: Array | float = 1.0) -> Array:
-        """Sum of the terms of a positive total, times a factor; infinity where they overflow."""
+        """Sum of factors times terms, which is positive; infinite where a term overflows."""
         # Terms of both signs may overflow.
         with np.errstate(all="ignore"):
             total: Any = sum(parts) * factor

@@ -12,7 +12,8 @@ from mdr_core.profiles.spheroids import Sphere
 from mdr_core.profiles.tipped import TippedCone
 from mdr_core.typing import Array, Flags, Parameter
 
-# Slope up to which the curvature of the tip rises too little to move the largest pressure.
+# Up to this slope the curvature of the tip rises too little to move the largest pressure from the
+# axis.
 _SHALLOW: Final = 0.5
 
 
@@ -59,11 +60,11 @@ class SphericalTipCone(TippedCone):
 
     @cached_property
     def opposite_singularity(self) -> Parameter:
-        """Distance h of the tangent point below the centre: the sphere continues to s = -h."""
+        """Distance h of the tangent point below the centre; the continued sphere ends at s = -h."""
         return self.tip_radius / np.hypot(1.0, self.slope)
 
     def _log_term(self, x: Array, s: Array) -> Array:
-        """L, by 1 + b^2 [1/(R + h) + 1/(x + s)]/(h + s) = (R + x)/(h + s)."""
+        """L, from (R + x)/(h + s) = 1 + b^2 [1/(R + h) + 1/(x + s)]/(h + s)."""
         b, big, h = self.flank_start, self.tip_radius, self.opposite_singularity
         return np.log1p(b / (h + s) * (b / (big + h) + b / (x + s)))
 

@@ -16,10 +16,11 @@ from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.quadrature import integrate
 from mdr_core.typing import Array, Flags, Indices, Parameter
 
-# a/R up to which h = g'(x)/x rises no faster than x: at 0.6412, the root of the sum of
-# (2k + 2)(2k - 1)/(2k + 1) t^2k from k = 1 on less 2, a h'(a) is h(a).
+# Up to this a/R, h = g'(x)/x rises no faster than x. At 0.6412 a h'(a) = h(a): there the sum of (2k
+# + 2)(2k - 1)/(2k + 1) t^2k over k >= 1 equals 2.
 _SHALLOW: Final = 0.64
-# Largest a/R. At the equator the load is infinite, and next to it a does not resolve the load.
+# Largest a/R. At the equator the load is infinite, and next to the equator a does not resolve the
+# load.
 _END: Final = 1 - 1e-8
 
 
@@ -57,7 +58,7 @@ class Spheroid(Profile):
         return (Branch(0.0, lambda x, _: self.dg(x), pole=equator),)
 
     def rounding_at(self, coordinate: Array) -> Parameter:
-        """Next to the equator that of R - a. See `Profile`."""
+        """Next to the equator the rounding error of R - a dominates. See `Profile`."""
         return self.rounding + EPS / 2 * self.radius / (self.radius - coordinate)
 
     def f(self, radius: Array) -> Array:
@@ -76,7 +77,7 @@ class Spheroid(Profile):
         return self.height / self.radius * (self._artanh(x) + pole)
 
     def _artanh(self, x: Array) -> Array:
-        """artanh(x/R) [1], as accurate as R - x."""
+        """artanh(x/R) [1], with the relative accuracy of R - x."""
         return 0.5 * np.log1p(2 * x / (self.radius - x))
 
     def reduced_force(self, coordinate: Array) -> Array:
@@ -98,7 +99,7 @@ class Spheroid(Profile):
         stretch, tilt2 = big / np.sqrt(square), r * r / square
 
         def h(y: Array, index: Indices) -> Array:
-            # arcsinh(z)/q for q = z sqrt(1 + z^2), with one root and a logarithm.
+            # arcsinh(z)/q for q = z sqrt(1 + z^2), evaluated with one root and one logarithm.
             z2 = np.sinh(y, out=y)
             z2 *= stretch[index]
             z2 *= z2
@@ -170,7 +171,7 @@ class Sphere(Spheroid):
 class Ellipsoid(Spheroid):
     """Spheroid f = h (1 - sqrt(1 - r^2/R^2)) with g(x) = (h/R) x artanh(x/R).
 
-    F_N(a)/E* is h/R times that of the sphere. Source: notes, §2.
+    F_N(a)/E* is h/R times the value of the sphere. Source: notes, §2.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Profiles with a tip of another kind, and the rounded cone as the one with a parabolic tip."""
+"""Profiles with a tip of another kind; the rounded cone, whose tip is a paraboloid."""
 
 from abc import abstractmethod
 from collections.abc import Callable

@@ -76,7 +76,7 @@ class Truncated(Flanked):
     def pressure_kernel(
         self, annulus: Annulus, radius: Array, beyond: Array | None = None
     ) -> Array:
-        """In s, of the radii as well if their contact coordinates are given as `beyond`.
+        """Integral over s; the radii are given by s as well if `beyond` has their coordinates.
 
         Source: notes, §5. Parameters: see `Profile`.
         """
@@ -224,7 +224,7 @@ class TruncatedParaboloid(Truncated):
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
         """s^3 + (3/2) b^2 s = (3/4) R F/E*, by the hyperbolic form of the cubic's root.
 
-        A step of Newton's method removes the rounding error of its logarithm far from the flat.
+        Far from the flat a step of Newton's method removes the rounding error of the logarithm.
         """
         b = self.flat_radius
         goal = 0.75 * (reduced_force * self.radius / (b * np.square(b)))

@@ -34,19 +34,19 @@ NEEDED: Final = (
     "a normal contact alone, without a tangential load or a load history: it is exact under a "
     "constant normal load only"
 )
-# Values of ln(a/c) down to which curves are resolved, one after the other until they hold the load.
+# Ends ln(a/c) to which a curve is resolved, one after the other until the curve contains the load.
 _DEPTHS: Final = (1.0, 2.0, 4.0, 8.0, 16.0, DEEPEST)
 # ln(a/x) at which int x^2 dg of g ~ x^(1/20) has converged.
 _CONVERGED: Final = DEEPEST / 2
-# Values for each break of the curve of one contact, which bound the size of arrays.
+# Values for each break of the curve of one contact; they bound the size of arrays.
 _VALUES: Final = 512
-# A profile, n of its contacts, and the cases with the indices of their contacts.
+# A profile, n contacts of it, and the cases with the index of the contact of each.
 _Group = tuple[Profile, Array, Indices, Indices]
-# Points of the integrals over ln x of an error of the data, which needs two digits.
+# Number of points of the integrals over ln x of the data error, of which two digits suffice.
 _OF_DATA: Final = 20
-# x/a from which int x^2 dg has those digits.
+# Lower end x/a at which int x^2 dg has two digits.
 _TIP: Final = 1e-4
-# Rounding error of the curves over that of closed forms, twice the largest of 2,000 contacts.
+# Rounding error of the curves relative to closed forms: twice the largest among 2,000 contacts.
 _OF_CURVES: Final = 10.0
 
 
@@ -75,7 +75,7 @@ class TorsionalContact(validity.ContactResults):
     dissipated_energy: Array
     """Energy dissipated by friction since the torque was zero [force length].
 
-    int (M dphi - phi dM), a quarter of the energy of a cycle of this amplitude.
+    It is int (M dphi - phi dM), a quarter of the energy of a cycle of this amplitude.
     """
     regime: "np.ndarray[Any, np.dtype[np.str_]]"
     """Regime: "stick", "partial_slip" or "full_slip"; see `solve`."""
@@ -93,9 +93,9 @@ class TorsionalContact(validity.ContactResults):
 
     @property
     def torsion_arm(self) -> Array:
-        """Largest torque over mu F_N, (pi/4) int x^2 dg/int x dg [length].
+        """Largest torque divided by mu F_N: (pi/4) int x^2 dg/int x dg [length].
 
-        Its limit at zero load, pi b/4 on a flat of radius b.
+        At zero load it is the limit: pi b/4 on a flat of radius b.
         """
         loaded = self.normal.loaded
         force = where(loaded, self.normal.normal_force / self.normal.e_star, 1.0)
@@ -106,8 +106,8 @@ class TorsionalContact(validity.ContactResults):
     def data_error(self) -> Array | None:
         """Relative error of torque and rotation that the points of a table leave open [1].
 
-        An estimate, at given a and c: the larger one of P(c), which decides on the rotation, and of
-        int x^2 dg, which decides on the largest torque, beside that of the normal contact.
+        It estimates, at given a and c, the largest of three errors: of P(c), which determines the
+        rotation, of int x^2 dg, which determines the largest torque, and of the normal contact.
         """
         normal, profile, known = self.normal, self.normal.profile, self.normal.data_error
         if known is None or not isinstance(profile, Tabulated):
@@ -128,17 +128,17 @@ class TorsionalContact(validity.ContactResults):
 
     @property
     def g_star(self) -> float | None:
-        """G* of the bodies [pressure], by which the warnings tell dissimilar ones."""
+        """G* of the bodies [pressure], from which the warnings detect dissimilar bodies."""
         return None if self.normal.material is None else self.normal.material.g_star
 
     @cached_property
     def model_error(self) -> Array:
-        """Estimated relative error of the model in each case [1], as of the normal contact."""
+        """Estimated relative error of the model in each case [1]; see the normal contact."""
         return self.normal.model_error + 0 * self.rotation
 
     @property
     def slips_from(self) -> Array:
-        """Least radius with slip [length]; infinite without."""
+        """Least radius with slip [length]; infinite without slip."""
         return np.where(self.slip_width > 0, self.stick_radius, np.inf)
 
     @property
@@ -166,14 +166,14 @@ def solve(
     rotation: ArrayLike | None = None,
     stick_radius: ArrayLike | None = None,
 ) -> TorsionalContact:
-    """Return the twist of a normal contact about its axis, applied once.
+    """Return a normal contact under one monotonic twist about its axis.
 
     With P(c) = int_c^a K(c/x) dg(x)/x and the complete elliptic integral K, for every profile
     phi = mu E* P(c)/(2 pi G) and M = (8 mu E*/(3 pi)) [c^3 P(c) + 3 int_c^a y^2 P(y) dy], so that
     dM = (16/3) G c^3 dphi. Slip spreads inwards from the edge, into a flat as well; a flat punch
     sticks completely up to M = (2/3) mu F_N a. P grows without bound as c -> 0: no rotation reaches
-    the largest torque. Full slip is the state of rotations at which c is below the machine epsilon
-    times a: c is returned as zero there, and M is the largest torque in double precision.
+    the largest torque. If c is below the machine epsilon times a, the contact is in full slip: c is
+    returned as zero, and M equals the largest torque in double precision.
 
     Source: jaeger; lubkin; deresiewicz; notes, §16.
 
@@ -187,8 +187,8 @@ def solve(
 
     Raises
     ------
-    InputError : a torque that is the largest one, mu F_N times `torsion_arm`, within its rounding
-        error, or more, without equilibrium; a stick radius outside the contact or below the machine
+    InputError : a torque without equilibrium, which reaches the largest torque mu F_N times
+        `torsion_arm` to rounding error; a stick radius outside the contact or below the machine
         epsilon times its radius; an adhesive contact; not exactly one load; parameters that are not
         positive.
 
@@ -236,7 +236,7 @@ def solve(
     largest = 3 / 16 * np.pi**2 * second
     error, of_edge = _OF_CURVES * flat(contact.error_estimates), conditioning.of_edge_slope(contact)
     if name == "torque":
-        # Next to the largest torque its rounding error decides on c.
+        # Next to the largest torque, the rounding error of that torque dominates the error of c.
         detail = (
             "no equilibrium: the torque reaches the largest one, friction_coefficient x "
             "normal_force x torsion_arm; reduce it, or prescribe rotation"
@@ -266,7 +266,7 @@ def solve(
 
 
 def _groups(profile: Profile, edge: Array, shape: tuple[int, ...]) -> Iterator[_Group]:
-    """Loaded cases in groups of contacts with one profile; equal contacts are one."""
+    """Loaded cases in groups of contacts with one profile; equal contacts are merged."""
     loaded = np.flatnonzero(edge > 0)
     if profile.swept:
         names = profile.parameters
@@ -301,7 +301,7 @@ def _states(
 
 
 def _slip_width(contact: NormalContact, stick: Array) -> Array:
-    """a - c of prescribed stick radii [length]; InputError if there is no such contact."""
+    """a - c of prescribed stick radii [length]; raises InputError if there is no such contact."""
     a, profile = contact.contact_radius, contact.profile
     outside = (stick > a) | (stick < EPS * a) | ((stick < a) & ~contact.loaded)
     detail = (
@@ -314,7 +314,7 @@ def _slip_width(contact: NormalContact, stick: Array) -> Array:
         _reject("stick_radius", stick, (stick == a) & contact.loaded, detail)
     if contact.control == "contact_radius" or profile.has_no_partial_slip:
         return a - stick
-    # The coordinate of an edge that follows from a load is accurate, its radius may not be.
+    # The contact coordinate of a computed edge is accurate; its radius may not be.
     past = np.maximum(contact.coordinate - (stick - profile.first_radius), 0.0)
     return np.where(stick < a, past, 0.0)
 
@@ -326,9 +326,9 @@ def _reject(name: str, given: Array, bad: Flags, detail: str) -> None:
 
 
 def _condition(name: str, states: Array, slides: Flags) -> Array:
-    """Bound on the relative change of results by a small one of the prescribed load.
+    """Bound on the relative condition number of the results with respect to the load.
 
-    The load decides on P, and with it on c, a - c, the other load and the work.
+    The load determines P, and P determines c, a - c, the other load and the work.
     """
     c, width, rotation, moment, _, slope = states
     if name == "stick_radius":

@@ -1,12 +1,12 @@
 """Virgin curves of torsion: rotation, torque and friction work over the stick radius.
 
-A twist turns the discs of all radii from c to a, one inside the other, so that the traction is mu p
-outside c. The rotation is proportional to
+A twist turns nested discs of all radii from c to a, so that the traction is mu p outside c. The
+rotation is proportional to
 
     P(c) = int_c^a K(c/x) dg(x)/x,    K(q) = int_0^(pi/2) dt/sqrt(cos^2 t + q^2 sin^2 t).
 
-In ln c, and beyond a break b in arcsinh(sqrt(c^2 - b^2)/b), it is analytic in a strip of half-width
-pi/2. It is held on pieces from the contact edge inwards, as the distance from the top of a piece
+In ln c, and beyond a break b in arcsinh(sqrt(c^2 - b^2)/b), P is analytic in a strip of half-width
+pi/2. It is stored on pieces from the contact edge inwards, as the distance from the top of a piece
 times a Chebyshev series, which keeps its relative accuracy in a narrow slip annulus.
 
 Source: notes, §16; jaeger.
@@ -27,7 +27,7 @@ from mdr_core.quadrature import NODES, STEEP, composite_rule
 from mdr_core.typing import Array, Indices
 
 DEEPEST: Final = -float(np.log(EPS))
-"""ln(a/c) beyond which a - c is a in double precision."""
+"""ln(a/c) beyond which a - c equals a in double precision."""
 # Length of a piece at which a strip of half-width pi/2 leaves 6.4^-NODES: rounding error.
 _LONGEST: Final = 1.0
 
@@ -44,7 +44,7 @@ _NODES, _MATRIX = _chebyshev(NODES)
 # Weights of the integrals from 0 to each of the nodes, and to 1.
 _SUMS: Final = chebyshev.chebint(_MATRIX, lbnd=-1) / 2
 _UP_TO: Final = chebyshev.chebval(2 * np.append(_NODES, 1.0) - 1, _SUMS).T
-# Series of the derivative by the share of the piece.
+# Matrix from a series to the series of its derivative over the relative position in the piece.
 _SLOPES: Final = 2 * np.pad(chebyshev.chebder(_MATRIX), ((0, 1), (0, 0)))
 _ALL: Final = slice(None), slice(None)
 
@@ -52,12 +52,12 @@ _ALL: Final = slice(None), slice(None)
 class VirginCurves:
     """Virgin curves of n contacts with one profile.
 
-    Pieces have arrays of shape (pieces, n). A place on a curve is a distance `along` from the top
-    of a piece, and the indices `at` of pieces and contacts.
+    Pieces have arrays of shape (pieces, n). A place on a curve is given by the distance `along`
+    from the top of a piece, and by the indices `at` of its piece and contact.
     """
 
     def __init__(self, profile: Profile, edge: Array, depth: float) -> None:
-        """Divide the contacts.
+        """Compute the curves of the contacts.
 
         Parameters
         ----------
@@ -78,7 +78,7 @@ class VirginCurves:
         if not parts or parts[0][1] > 0:
             parts.insert(0, (0.0, 0.0, parts[0][1] if parts else np.inf, -1))
         base, low, stop, owner = (np.array(each)[::-1, None] for each in zip(*parts, strict=True))
-        # Distances from the base: next to a flat they have more digits than radii.
+        # Distances from the base are more accurate than radii next to a flat.
         bottom = np.clip(self.a * np.exp(-depth), low, stop) - base
         top = np.maximum(np.minimum(stop - base, past + (flat - base)), bottom)
         root, inner = (np.sqrt(each * (2 * base + each)) for each in (top, bottom))
@@ -119,11 +119,11 @@ class VirginCurves:
 
     @cached_property
     def _resolved(self) -> tuple[Array, Array, Array]:
-        """Values at the tops of pieces and at the end, the moment there, and the series.
+        """Values and moments at the tops of pieces and at the end, and the series.
 
         Values (4, pieces + 1, n): P, a - x [length], A = int y^2 P dy and the work P A - int y^2
-        P^2 dy [length^3]. Series (NODES, 2, pieces, n): of the increase of P over the distance,
-        and of its derivative.
+        P^2 dy [length^3]. Series (NODES, 2, pieces, n): the increase of P divided by the distance,
+        and its derivative.
 
         The kernel K(y/x) is analytic in ln y up to a distance of pi from the real line: over few y
         it is a series, whose coefficients are integrals over dg alone.
@@ -166,7 +166,7 @@ class VirginCurves:
         return along * rate, rate + share * change
 
     def _moment_gain(self, along: Array, at: tuple[Indices, Indices]) -> tuple[Array, Array]:
-        """Increase of the moment, likewise."""
+        """Increase of the moment from the top of a piece to a place, and its derivative."""
         gains, weights = self._inside(along, self._resolved[2], at)
         cube, (gain, slope) = self.place(along, at)[0] ** 3, self._gain(along, at)
         return cube * gain + 3 * (weights * gains).sum(axis=0), cube * slope
@@ -188,7 +188,7 @@ class VirginCurves:
         return self._resolved[1] if of_moment else self._resolved[0][0]
 
     def at_load(self, load: Array, contact: Indices, *, of_moment: bool) -> Array:
-        """Return the states at which P, or the moment, has a value; beyond the end, the end.
+        """Return the states at given values of P or of the moment; beyond the end, the last state.
 
         Parameters
         ----------
@@ -214,7 +214,7 @@ class VirginCurves:
         need = np.where(within, need, 0.0)
         along = invert(sloped, need, start, 0 * length, length, "virgin curve of torsion")
         state = self._state(np.where(load >= tops[1:][at], length, along), at)
-        # Below the step of a flat punch all of it sticks.
+        # Below the step of P at the edge a flat punch sticks completely.
         onset = tops[0, contact]
         state[2:4] *= np.where(load < onset, load / np.where(onset > 0, onset, 1.0), 1.0)
         return state
@@ -234,7 +234,7 @@ class VirginCurves:
 
     @property
     def branches(self) -> list[Branch]:
-        """Intervals of the slope -dP/dx of a single contact, without the step of a flat punch."""
+        """Intervals of -dP/dx of a single contact, without the step of a flat punch."""
         starts, stops = (self.place(each)[0][:, 0] for each in (self.length, 0 * self.length))
         # A contact radius may differ from the top by rounding.
         columns = self.base[:, 0], range(len(starts)), [np.inf, *stops[1:]], starts

@@ -12,7 +12,7 @@ from mdr_core.typing import Array, Parameter
 
 
 class TorsionCycle(NamedTuple):
-    """Closed loop of torque over rotation, from its upper turning point down and back."""
+    """Closed loop of torque over rotation, starting at the upper turning point."""
 
     turning: TorsionalContact
     """Contact at the upper turning point, before the first reversal."""
@@ -35,9 +35,9 @@ def cycle(
 ) -> TorsionCycle:
     """Return a cycle of the twist between two opposite torques or rotations.
 
-    After a reversal the torque follows the law M(phi) of the first twist, enlarged twice: on the
-    way down from (phi_0, M_0) it is M_0 - 2 M((phi_0 - phi)/2), and the way back is its mirror
-    image. The energy of a cycle is four times that of the first twist.
+    After a reversal at (phi_0, M_0) the torque follows the law M(phi) of the first twist, scaled by
+    two: M_0 - 2 M((phi_0 - phi)/2). The second half of the loop is the mirror image of the first.
+    A cycle dissipates four times the energy of the first twist.
 
     Source: deresiewicz; notes, §16.
 

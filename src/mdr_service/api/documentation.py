@@ -8,8 +8,9 @@ from mdr_service.serializers import FORMATS
 
 Responses = dict[int | str, dict[str, Any]]
 
-# The browser connects to no other host, whatever the page shows, and no other host frames the page.
-# Plotly sets styles of elements, and draws a downloaded picture from a blob.
+# The policy keeps the browser from connecting to other hosts, and other hosts from framing the
+# page. Plotly needs exceptions: it sets styles of elements, and draws a downloaded picture from a
+# blob.
 PAGE_HEADERS: Final = {
     "Content-Security-Policy": (
         "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "

@@ -25,7 +25,7 @@ _OWN: Final = distribution("mdr-contact")
 _README: Final = str(_OWN.metadata.json["description"])
 _LICENSE: Final = _OWN.read_text("licenses/LICENSE")
 _HEADERS: Final = PAGE_HEADERS | {"Cache-Control": "no-cache", "Accept-Ranges": "none"}
-# Built by `make docs`, and in the image.
+# The manual is built by `make docs`, and in the container image.
 MANUAL: Final = Path(sys.prefix, "share", "mdr", "manual")
 _LINKS: Final = {
     "explorer": "./",
@@ -94,5 +94,5 @@ async def document(request: Request) -> Response:
 
 @cache
 def openapi_document(app: FastAPI) -> bytes:
-    """Return the OpenAPI document, which the endpoint of the framework writes for each request."""
+    """Return the OpenAPI document; the framework's endpoint would write it for each request."""
     return orjson.dumps(app.openapi())

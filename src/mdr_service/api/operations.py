@@ -19,7 +19,7 @@ from mdr_service.settings import SETTINGS, Settings
 router = APIRouter(responses=failures(problems.HEADERS_TOO_LARGE))
 
 _DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("utf-8")
-# The text format of Prometheus.
+# Media type of the text format of Prometheus.
 _METRICS: Final = "text/plain; version=0.0.4; charset=utf-8"
 _AS: Final = "`profile` (radius and height) or `curve` (depth and force)"
 _EXAMPLE: Final = {"schema": {"type": "string"}, "example": "r [mm];f [µm]\n0;0\n0,1;0,5"}
@@ -99,7 +99,7 @@ async def live() -> Health:
 async def ready(request: Request) -> Health:
     """Return 200 if a compute process solves a Hertzian contact correctly.
 
-    An instance that is busy is not ready for the moment.
+    A busy instance is temporarily not ready.
     """
     await request.app.state.compute.run_in_process(health.self_test, seconds=health.SECONDS)
     return _OK
@@ -119,5 +119,5 @@ async def metrics() -> Response:
 
 @router.get("/docs", include_in_schema=False)
 async def docs() -> Response:
-    """Return the documentation page, whose files are all of this host."""
+    """Return the documentation page, all files of which come from this host."""
     return HTMLResponse(_DOCS_PAGE, headers=PAGE_HEADERS)

@@ -25,7 +25,7 @@ Return the response of `POST` for numbers and at most one range.
 A range `..._from`, `..._to` and `n` stands for a list of `n` numbers."""
 
 
-# Functions that declare endpoints for OpenAPI: `QueryRoute` handles the requests.
+# These functions declare endpoints for OpenAPI; `QueryRoute` handles the requests.
 
 
 def _post(name: str, path: str, model: Any, **described: Any) -> APIRoute:

@@ -21,16 +21,16 @@ from mdr_service.serializers import FORMATS, JSON, PICTURES
 from mdr_service.serializers.picture import AS_USUAL, Appearance
 
 MAX_PARSED_ON_LOOP: Final = 16_384
-"""Longest query that is parsed on the event loop; the worst one is rejected in 2 ms."""
-# A response depends on the query and on the version of the service alone.
+"""Longest query that is parsed on the event loop [bytes]; the slowest one is rejected in 2 ms."""
+# A response depends only on the query and on the version of the service.
 _CACHED: Final = {"Cache-Control": "max-age=3600", "Vary": "Accept"}
 
 
 def _form_of(request: Request, name: str, given: ResponseParameters) -> tuple[str, Appearance]:
-    """Return media type and appearance of the response, by parameters or the header ``Accept``."""
+    """Return media type and appearance of the response, from parameters or from ``Accept``."""
     accept = header(request.scope, b"accept", "*/*")
     if given.format is given.size is given.units is None and accept == "*/*":
-        # As most clients ask.
+        # Most clients send this header, or none.
         return JSON, AS_USUAL
     # A batch is JSON only.
     found = media_type(given.format, accept, ["json"] if name == "batch" else list(FORMATS))
@@ -44,7 +44,7 @@ async def _answer(
     form: tuple[str, Appearance],
     members: Sequence[str] = (),
 ) -> Response:
-    """Return the response, of a long query or an unparsed one from a compute process."""
+    """Return the response; a long or unparsed query is answered by a compute process."""
     arguments = name, query, *form, members
     if isinstance(query, contacts.Query) and form[0] not in PICTURES and is_short(name, query):
         content = respond(*arguments)
@@ -58,10 +58,10 @@ async def _answer(
 class QueryRoute(APIRoute):
     """Route of the endpoint of a query.
 
-    The framework's own handler would parse a body to a dictionary first, solve dependencies and
-    validate the response. This one parses the bytes straight into the model: 20 instead of 50 µs
-    per request, apart from the computation. It hands long bodies to a compute process unparsed, so
-    that they do not block the event loop.
+    The framework's own handler parses a body to a dictionary first, resolves dependencies and
+    validates the response. This route parses the bytes directly into the model, which takes 20
+    instead of 50 µs per request, apart from the computation. It passes long bodies unparsed to a
+    compute process, so that they do not block the event loop.
     """
 
     def __init__(
@@ -81,8 +81,9 @@ class QueryRoute(APIRoute):
         path, endpoint : path, and function that declares the endpoint.
         query_name : name of the query, or ``batch``.
         model : model of the request.
-        parameters : model of the parameters of the URL, of `Parameters` if they are the request.
-        described : what OpenAPI documents, as for `APIRoute`.
+        parameters : model of the parameters of the URL, a subclass of `Parameters` if they are the
+            request.
+        described : arguments of `APIRoute` that OpenAPI documents.
         """
         self.query_name, self.model, self.parameters = query_name, model, parameters
         super().__init__(path, endpoint, **described)
@@ -100,7 +101,7 @@ class QueryRoute(APIRoute):
             form = _form_of(request, name, given)
             if isinstance(given, Parameters):
                 with given.pointing():
-                    # A range can be long: a compute process makes its list.
+                    # A compute process expands ranges, because they can be long.
                     query: Any = texts if given.n else given.query()
                     response = await _answer(request, name, query, form, given.members)
                 response.headers.update(_CACHED)
@@ -114,12 +115,12 @@ class QueryRoute(APIRoute):
 
 
 def _url_parameters(request: Request, parameters: type[ResponseParameters]) -> dict[str, str]:
-    """Return the parameters of the URL, each of which can be given once."""
+    """Return the parameters of the URL, each of which may be given only once."""
     text: bytes = request.scope["query_string"]
     if not text:
         return {}
     if text.count(b"&") >= len(parameters.model_fields):
-        # Some thousand unknown names would hold the event loop.
+        # Thousands of unknown names would block the event loop.
         names = ", ".join(parameters.model_fields)
         raise problems.invalid([("", f"there are more parameters than may be given: {names}")])
     pairs = request.query_params.multi_items()

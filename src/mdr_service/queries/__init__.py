@@ -1,7 +1,6 @@
 """The queries: endpoint, models and functions of each, from the request to its complete result.
 
-Everything that a response holds is computed and checked by these functions: serializers only
-format it.
+These functions compute and check all values of a response; serializers only format them.
 """
 
 from collections.abc import Callable, Mapping

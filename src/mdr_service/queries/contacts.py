@@ -1,7 +1,7 @@
-"""Queries about contacts, and what all queries share.
+"""Queries about contacts, and functions that all queries share.
 
-Profile, material and load become arguments of the core; its results, checked for overflow and with
-their warnings, the members of a response.
+Profile, material and load become arguments of the core. Results of the core, checked for overflow,
+become the members of a response, together with their warnings.
 """
 
 from collections.abc import Iterable, Mapping
@@ -35,7 +35,7 @@ ADHESION: Final = {"work_of_adhesion", "range_of_adhesion"}
 """Members of the material that make a contact adhesive."""
 
 Result = dict[str, Any]
-"""The members of a JSON response in their order, with arrays for long lists."""
+"""Members of a JSON response in their order, with arrays for long lists."""
 Contact = NormalContact | TangentialContact | LoadHistory
 
 
@@ -80,8 +80,8 @@ def profile(model: Profile) -> profiles.Profile:
     return _by_parameters(model.kind, **given)
 
 
-# Fitting a table takes up to a hundred times as long as a contact, and a profile computes its break
-# and the contact coordinate there on first use.
+# The cache pays off, because fitting a table takes up to a hundred times as long as a contact, and
+# a profile computes its break and the contact coordinate of the break on first use.
 @lru_cache(maxsize=32)
 def _by_parameters(kind: str, **given: Any) -> profiles.Profile:
     return profiles.KINDS[kind](**given)
@@ -90,7 +90,7 @@ def _by_parameters(kind: str, **given: Any) -> profiles.Profile:
 def body(query: Query) -> Arguments:
     """Return profile and material, as arguments of the core.
 
-    Raises InputError where adhesion meets friction or yield, or has a range and no work.
+    Raises InputError if adhesion is combined with friction or yield, or has a range but no work.
     """
     material = query.material
     if material.has("layer"):
@@ -155,7 +155,7 @@ def holds_while(query: NormalQuery | StressQuery, source: Contact) -> Result:
 def contact_values(
     query: Query, source: NormalContact | TangentialContact | TorsionalContact
 ) -> tuple[Result, dict[str, Any]]:
-    """Return the quantities of a contact by load, and which of them can be infinite."""
+    """Return the quantities of a contact by load, and flags of those that can be infinite."""
     values = by_load(source, query.loads)
     known = source if isinstance(source, TorsionalContact) else source.normal
     normal = source.normal
@@ -185,7 +185,7 @@ def by_load(source: Results, loads: int) -> Result:
 def checked(
     query: Query, values: Result, infinite: Mapping[str, bool | Flags] | None = None
 ) -> Result:
-    """Return `values` by name if they are finite, or infinite only where `infinite` allows it.
+    """Return `values` if all are finite, apart from entries that `infinite` allows to be infinite.
 
     Raises InputError if a value overflows, and DefectError if one is NaN without an overflow.
     """
@@ -224,7 +224,7 @@ def response(
     query : the request.
     source : the solution, a result of the core.
     values : members of the response, numbers that are checked.
-    unchecked : members that are no lists of numbers.
+    unchecked : members that are not lists of numbers.
     infinite : True for the members, or their entries, that can be infinite.
     method, error : method and error estimate of the values, if they differ from the source.
     warnings : warnings about the values alone.
@@ -236,13 +236,13 @@ def response(
     """
     found = [*source.warnings, *validity.notices(yields(query, source))]
     if "mean_pressure" not in values:
-        # Other responses hold no scalar that is singular; their fields have warnings of their own.
+        # Other responses contain no singular scalar; their fields have warnings of their own.
         found = [notice for notice in found if notice.code != "singular"]
     found += warnings
     if error is None:
         error = source.error_estimate
     else:
-        # The source warns of its own error, not of the error of fields.
+        # The warnings of the source cover its own error, not the error of fields.
         found = [notice for notice in found if notice.code != "accuracy"]
         if error > ACCURACY:
             found.append(inaccurate(error))

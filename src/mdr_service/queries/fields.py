@@ -28,7 +28,7 @@ from mdr_service.schemas.fields import SHEAR_FIELDS, FieldQuery, LoadedQuery, St
 from mdr_service.schemas.subsurface import SubsurfaceQuery
 from mdr_service.settings import SETTINGS
 
-# Closed form wherever the equivalent profile is.
+# These fields have a closed form if the equivalent profile has one.
 _FOUNDATION: Final = frozenset({"foundation_load", "foundation_shear"})
 
 End = tuple[NormalContact, TangentialContact | ContactState | None]
@@ -46,7 +46,7 @@ def solve_stress(query: StressQuery) -> Contact:
 
 
 def require_loads(query: LoadedQuery) -> None:
-    """Raise InputError unless the query has loads, or a load history, that fit its friction."""
+    """Raise InputError unless the loads, or the load history, of a query suit its friction."""
     require_one_of(query, "load", "history")
     by_path = query.has("history")
     if by_path and query.has("tangential"):
@@ -106,7 +106,7 @@ def field(name: str, end: End, radius: Array) -> Array:
 
     Parameters
     ----------
-    name : function of `mdr_core.fields`, a quantity of a stress query.
+    name : quantity of a stress query, the name of a function of `mdr_core.fields`.
     end : result of `at_end`.
     radius : radii r >= 0 [length], shape (m,).
     """
@@ -116,7 +116,7 @@ def field(name: str, end: End, radius: Array) -> Array:
 
 
 def at_end(source: Contact) -> End:
-    """Return the normal contact of the fields, and what friction adds to it."""
+    """Return the normal contact of the fields, and the tangential contact or state, if any."""
     if isinstance(source, TangentialContact):
         return source.normal, source
     if isinstance(source, NormalContact):
@@ -128,7 +128,7 @@ def at_end(source: Contact) -> End:
 
 
 def require_few_numbers(query: FieldQuery | SubsurfaceQuery, axis: str = "radius") -> None:
-    """Raise InputError if the response would hold too many numbers along its axis."""
+    """Raise InputError if the response would contain too many numbers along its axis."""
     most = SETTINGS.max_numbers
     if query.numbers > most:
         detail = f"the response would hold {query.numbers} numbers, and must not exceed {most}"
@@ -136,7 +136,7 @@ def require_few_numbers(query: FieldQuery | SubsurfaceQuery, axis: str = "radius
 
 
 def require_radii(query: FieldQuery) -> None:
-    """Raise InputError unless radii are given once at most, and where fields need them."""
+    """Raise InputError if radii are given twice, or are missing although fields need them."""
     if query.radius and query.points:
         raise InputError(("points",), "at most one of radius, points is needed")
     if "quantities" in query.model_fields_set and not query.radii:
@@ -145,7 +145,7 @@ def require_radii(query: FieldQuery) -> None:
 
 
 def _require_consistent(query: StressQuery) -> None:
-    """Raise InputError where fields that are valid alone contradict each other."""
+    """Raise InputError if fields that are valid separately contradict each other."""
     require_loads(query)
     with_friction = query.has("tangential") or query.has("history")
     for index, name in enumerate(query.quantities):

@@ -26,7 +26,7 @@ def solve_history(query: HistoryQuery) -> LoadHistory:
     Between two samples both loads vary linearly: the displacement with the depth, or the tangential
     force with the normal force. Every such path is solved exactly. Where a depth changes with a
     tangential force, or a normal force with a displacement, more `samples_per_step` follow the
-    curve on which these vary linearly. A negative depth is a separation, which erases the slip
+    curve on which these vary linearly. A negative depth means separation, which erases the slip
     memory. A tangential force beyond µ F_N, at a point or between points, has no equilibrium and is
     rejected.
 

@@ -16,7 +16,7 @@ from mdr_service.schemas.subsurface import SubsurfaceQuery
 
 # A grid that the service chooses extends to this multiple of the largest contact radius.
 _BEYOND: Final = 1.5
-# Errors of the components that add up in an invariant.
+# Number of components whose errors add up in an invariant.
 _OF_INVARIANTS: Final = 4.0
 # Relative accuracy of the largest stresses, and of the normal force at the onset of yield.
 _OF_SEARCH: Final = 1e-4
@@ -43,7 +43,7 @@ def solve_subsurface(query: SubsurfaceQuery) -> Contact:
 
 
 def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
-    """Return the requested stresses by load, depth and x, and what else is requested."""
+    """Return the requested stresses by load, depth and x, and the other requested members."""
     contact, partial = at_end(source)
     loaded, body = partial or contact, body_of(query)
     if query.has("x"):

@@ -22,10 +22,10 @@ from mdr_service.schemas.torsion import TorsionQuery
 def solve_torsion(query: TorsionQuery) -> TorsionalContact:
     """Compute a contact with friction, loaded normally first and then twisted about its axis once.
 
-    Exact for every profile under a constant normal load. Every list of the response has one entry
-    per pair of loads. The torque stays below µ F_N times `torsion_arm`, which no rotation reaches;
-    a torque beyond has no equilibrium and is rejected. A twist cannot be combined with a tangential
-    load or adhesion, for which it is not exact.
+    The solution is exact for every profile under a constant normal load. Every list of the response
+    has one entry per pair of loads. The torque stays below µ F_N times `torsion_arm`, which no
+    rotation reaches; a larger torque has no equilibrium and is rejected. A twist cannot be combined
+    with a tangential load or adhesion, for which it is not exact.
     """
     require_radii(query)
     twist = paired("torsion", query.torsion, query.load)

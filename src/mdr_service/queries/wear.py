@@ -26,9 +26,9 @@ from mdr_service.queries.fields import require_radii
 from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 
 Wear = LimitingWear | WearEvolution
-# A set would order the warnings by chance, and differently in each process.
+# A tuple, because the order of a set, and thus of the warnings, differs between processes.
 _PROFILES: Final = ("initial_profile", "limiting_profile", "profile")
-# Infinite under unbounded wear.
+# Quantities that are infinite under unbounded wear.
 _UNBOUNDED: Final = frozenset(
     {"wear_radius", "indentation_depth", "worn_volume", "limiting_profile", "worn_depth"}
 )

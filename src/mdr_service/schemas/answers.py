@@ -170,7 +170,7 @@ class FitAnswer(SolvedAnswer):
 
 
 class HistoryAnswer(SolvedAnswer):
-    """One entry per sample in every list, but for `slip_fronts` and the lists over the cycles."""
+    """One entry per sample in every list, except `slip_fronts` and the lists over the cycles."""
 
     step: list[int] = _number("Index of the load step, from 0")
     indentation_depth: list[float] = _length("Indentation depth d; below 0 a separation")

@@ -21,7 +21,7 @@ from mdr_service.schemas.quantities import (
 
 
 def _describe_choice(schema: dict[str, Any]) -> None:
-    """Describe the controls as objects of which one is given, each complete with its fields."""
+    """Describe the controls as alternative objects, each with all its fields."""
     fields = schema.pop("properties")
     optional = {name: field for name, field in fields.items() if field.get("default") is not None}
     schema["oneOf"] = [
@@ -73,7 +73,7 @@ class Choice(Strict, json_schema_extra=_describe_choice):
 class Load(Choice):
     """Normal load: exactly one control, a number or a list."""
 
-    # An absent control is None; a given one is never null.
+    # An absent control is None; null is not valid input.
     indentation_depth: SignedScalarOrArray = quantity(
         "length", "Indentation depth d, with adhesion down to the pull-off", default=None
     )
@@ -126,7 +126,7 @@ class BodyMaterial(Strict):
     )
 
 
-# As an enumeration, because a generator of clients takes no constant in a choice.
+# The schema is an enumeration, because client generators accept no constant in a choice.
 _Rigid = Annotated[Literal["rigid"], WithJsonSchema({"type": "string", "enum": ["rigid"]})]
 BodyOrRigid = Annotated[
     Annotated[_Rigid, Tag("<rigid>")] | Annotated[BodyMaterial, Tag("<body>")],
@@ -179,7 +179,7 @@ def layer() -> Any:
 class Elastic(Strict):
     """Material of a contact."""
 
-    # Optional, but not null: hence a plain float with the default None.
+    # The field is optional, but not null; hence a plain float with the default None.
     yield_strength: float = positive(
         "pressure",
         "Yield strength Y of the softer body, in uniaxial tension; the response carries the "
@@ -283,11 +283,12 @@ class Axes(NamedTuple):
     y: tuple[str, ...]
     """Ordinates, each with a panel of its own."""
     curves: str = ""
-    """Member with a curve for each of its values."""
+    """Member of which each value has a curve of its own."""
     in_order: bool = False
     """True if the curve joins the entries in their own order."""
     is_measured: bool = False
-    """True if the first ordinate is fitted to measured values, and the second is what is left."""
+    """True if the first ordinate is fitted to measured values, and the second holds the
+    residuals."""
 
 
 class Query(Strict):
@@ -301,7 +302,7 @@ class Query(Strict):
 
     @property
     def controls(self) -> dict[str, Choice]:
-        """Given loads by the name of their field, unless they are a load path."""
+        """Given loads by the name of their field; empty for a load path."""
         fields = vars(self)
         return {name: fields[name] for name in _LOADS if fields.get(name)}
 
@@ -312,7 +313,7 @@ class Query(Strict):
 
     @property
     def path(self) -> Any:
-        """Load path (`schemas.load_paths.LoadPath`), None where there is none."""
+        """Load path (`schemas.load_paths.LoadPath`), None without one."""
         return None
 
     @property

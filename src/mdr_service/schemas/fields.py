@@ -23,7 +23,7 @@ SHEAR_FIELDS: Final = frozenset({"shear_stress", "slip", "foundation_shear"})
 
 
 class FieldQuery(Query):
-    """Query of fields at radii that are given, or that the service chooses."""
+    """Query of fields at given radii, or at radii that the service chooses."""
 
     radius: list[Size] = places(
         "Radii r of the fields, in any order. `error_estimate` does not apply at radii within four "
@@ -42,7 +42,7 @@ class FieldQuery(Query):
 
     @property
     def radii(self) -> int:
-        """Number of radii, also where `radius` and `points` are both given or both absent."""
+        """Number of radii, also if `radius` and `points` are both given or both absent."""
         return len(self.radius or ()) + (self.points or 0)
 
     @property
@@ -90,7 +90,7 @@ NEEDED: Final = {
     "tangential": ["load", "friction_coefficient"],
     "history": ["friction_coefficient"],
 }
-"""Members of a `LoadedQuery` that need others, as `dependentRequired`."""
+"""Members of a `LoadedQuery` that require other members, in the form of `dependentRequired`."""
 
 
 _STRESS: Final[dict[str, Any]] = {

@@ -22,7 +22,7 @@ _CURVE = {"min_length": 3, "max_length": SETTINGS.max_length, "fail_fast": True}
 
 
 class FitQuery(Query):
-    """Measured curve, and what it shall tell about a contact of a known profile."""
+    """Measured curve of a contact of known profile, and the parameters to fit."""
 
     axes = Axes("indentation_depth", ("normal_force", "residual"), is_measured=True)
 

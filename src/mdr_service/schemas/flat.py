@@ -14,7 +14,7 @@ Schema = Mapping[str, Any]
 def leaves(
     root: Schema, node: Schema | None = None, name: str = ""
 ) -> Iterator[tuple[str, Schema]]:
-    """Yield names and schemas of the numbers, strings and arrays of these in a request.
+    """Yield the dotted name and schema of each number, string, or array of numbers or strings.
 
     `root` is the JSON schema of the request, and `node` the part to walk, with its name.
     """
@@ -22,7 +22,7 @@ def leaves(
     if "$ref" in node:
         node = root["$defs"][node["$ref"].rpartition("/")[2]]
     for branch in node.get("oneOf", ()):
-        # A number or a list of numbers is described once, for both.
+        # A number or a list of numbers has one entry.
         described = {"description": node.get("description", "")} | branch
         yield from leaves(root, described, name)
     for member, child in node.get("properties", {}).items():

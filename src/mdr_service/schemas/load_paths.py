@@ -37,7 +37,7 @@ class NormalPoints(Choice):
 class TangentialPoints(Choice):
     """Points of the tangential load: exactly one control, a number or a list.
 
-    If one list is longer than the other, the other holds a single value.
+    If the lists differ in length, the shorter one contains a single value.
     """
 
     tangential_displacement: SignedScalarOrArray = quantity(
@@ -108,7 +108,7 @@ class LoadPath(Strict):
         return self.steps * self.per_step
 
     def place(self, axis: str, step: int) -> tuple[str | int, ...]:
-        """Return the path from here to the value at the end of a load step, the last of fewer."""
+        """Return the path to the value at the end of a load step, the last of a shorter list."""
         choice: Choice = getattr(self, axis)
         index = (min(step, choice.count - 1),) if isinstance(choice.value, list) else ()
         return (axis, choice.control, *index)
@@ -129,7 +129,7 @@ class History(LoadPath):
 
 
 class Cycles(LoadPath):
-    """Identical cycles of the tangential load between its amplitudes, from the upper one.
+    """Identical cycles of the tangential load between its amplitudes, from the positive one.
 
     They start from the mean normal load without a tangential load.
     """
@@ -159,7 +159,7 @@ class Cycles(LoadPath):
 
 
 class HistoryState(Strict):
-    """State at the end of a history, with which another request carries it on."""
+    """State at the end of a history, from which another request continues it."""
 
     contact: str = Field(
         description="Digest of the profile, the moduli, the friction coefficient and the controls.",
@@ -203,5 +203,5 @@ class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles
 
     @property
     def numbers(self) -> int:
-        """Number of values of the state, which takes time as others do."""
+        """Number of values in the state, which count in the cost of a query."""
         return sum(map(len, self.initial_state.polyline)) if self.has("initial_state") else 0

@@ -10,7 +10,7 @@ from mdr_service.schemas.quantities import Signed, Size, Strict, one_of, positiv
 from mdr_service.settings import SETTINGS
 
 _COEFFICIENT = "length^(1-exponent)"
-# A series of more powers is none that a body has; each costs a sum.
+# Maximum number of powers: shapes of bodies need fewer, and each power costs a sum.
 _MAX_TERMS = 100
 
 
@@ -163,7 +163,7 @@ class CappedParaboloidProfile(Strict):
 
 
 class TabulatedProfile(Strict):
-    """A measured profile, the smoothest through or near its points; never extrapolated."""
+    """A measured profile: the smoothest one through or near its points; never extrapolated."""
 
     kind: Literal["tabulated"]
     r: list[Signed] = quantity(
@@ -229,4 +229,4 @@ OF_NUMBERS: Final = tuple(
         for name, field in model.model_fields.items()
     )
 )
-"""Kinds that consist of numbers."""
+"""Kinds of profile whose fields are all numbers."""

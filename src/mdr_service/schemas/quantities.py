@@ -15,7 +15,7 @@ LARGEST: Final = 1e50
 
 
 class Strict(BaseModel):
-    """Part of a request: no value is converted, no unknown field is ignored."""
+    """Part of a request; values are not converted, and unknown fields are rejected."""
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
@@ -55,7 +55,7 @@ def heading(description: str) -> str:
 
 def places(meaning: str) -> Any:
     """Return the optional field of a list of radii, coordinates or depths."""
-    # The first invalid element is reported, not all of a hundred thousand.
+    # Only the first invalid element is reported: a list may have a hundred thousand.
     size = {"min_length": 1, "max_length": SETTINGS.max_length, "fail_fast": True}
     return quantity("length", meaning, default=None, **size)
 
@@ -80,12 +80,12 @@ _NotTiny = AfterValidator(_not_tiny)
 _KEYWORD: Final = {"x-smallest-magnitude": SMALLEST}
 Size = Annotated[float, Field(ge=0, le=LARGEST, json_schema_extra=_KEYWORD), _NotTiny]
 Signed = Annotated[float, Field(ge=-LARGEST, le=LARGEST, json_schema_extra=_KEYWORD), _NotTiny]
-# The first invalid element is reported, not all of a hundred thousand.
+# Only the first invalid element is reported: a list may have a hundred thousand.
 _Many = Field(min_length=1, max_length=SETTINGS.max_length, fail_fast=True)
 
 BRANCHES: Final = frozenset({"<number>", "<list>", "<rigid>", "<body>", "<moduli>", "<bodies>"})
 """Branches of unions, which pydantic inserts into the location of an error."""
-# It reports errors for the branch that the value belongs to only.
+# The discriminator restricts errors to the branch to which the value belongs.
 _BY_TYPE: Final = Discriminator(lambda value: "<list>" if isinstance(value, list) else "<number>")
 ScalarOrArray = Annotated[
     Annotated[Size, Tag("<number>")] | Annotated[list[Size], _Many, Tag("<list>")],

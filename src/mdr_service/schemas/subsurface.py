@@ -58,7 +58,7 @@ class SubsurfaceQuery(LoadedQuery, json_schema_extra=_SCHEMA):
 
     @property
     def positions(self) -> int:
-        """Number of points, also where the request contradicts itself."""
+        """Number of points, also for a request that contradicts itself."""
         return len(self.x or ()) * len(self.z or ()) + (self.points or 0) ** 2
 
     @property
