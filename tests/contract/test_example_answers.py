@@ -13,6 +13,8 @@ def test_every_query_has_an_example_response(client: Client) -> None:
     document = client.get("/openapi.json").json()
     for path in document["paths"].values():
         for operation in path.values():
-            if {"contact", "wear", "batch"} & set(operation["tags"]):
+            # A file, the input of `table`, is no JSON.
+            is_file = operation["operationId"] == "table"
+            if {"contact", "wear", "batch"} & set(operation["tags"]) and not is_file:
                 content = operation["responses"]["200"]["content"]["application/json"]
                 assert content["example"] == ANSWERS[operation["operationId"]]

@@ -29,7 +29,7 @@ def test_gel_on_glass(client: Client) -> None:
         assert found["normal_force"] == pytest.approx([1.90928206748e-08], rel=1e-10, abs=0)
         assert found["method"] == "quadrature"
         codes = [warning["code"] for warning in found["warnings"]]
-        assert codes == ["half_space", "layer_strain"]
+        assert codes == ["half_space", "large_strain", "layer_strain"]
 
 
 def test_normal_fields_and_adhesion(client: Client) -> None:

@@ -13,8 +13,8 @@ import orjson
 
 MEDIA_TYPE: Final = "text/csv"
 PLAIN_TEXT: Final = "text/plain"
-# Lists of objects.
-_LISTS: Final = frozenset({"warnings", "holds_while"})
+# Lists of objects and of keys of the literature.
+_LISTS: Final = frozenset({"warnings", "holds_while", "sources"})
 # Lists over the cycles of a history or at its end: these have no row.
 _NOT_IN_ROWS: Final = frozenset(
     {*_LISTS, "slip_fronts", "energy_per_cycle", "secant_stiffness", "correlation"}
