@@ -29,7 +29,10 @@ COMMANDS: Final = {
         "solve a frictionless normal contact",
         f"mdr normal {_STEEL} --normal-force 10",
     ),
-    "fit": Command("fit modulus and contact point to a curve", "mdr fit request.json"),
+    "fit": Command(
+        "fit modulus and contact point to a curve",
+        "mdr fit curve.csv --kind paraboloid --radius 5e-6 --segment loading",
+    ),
     "tangential": Command(
         "solve a contact with friction",
         f"mdr tangential {_SHEARED} --normal-force 10 --tangential-force 2",

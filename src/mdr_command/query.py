@@ -19,12 +19,13 @@ from pydantic.fields import FieldInfo
 from mdr_command import ExitStatus
 from mdr_core.errors import InputError
 from mdr_core.profiles.tabulated import tip_points
-from mdr_core.table_reader import Points, metres, read_table
+from mdr_core.table_reader import CURVE, MeasuredCurve, Points, metres, read_curve, read_table
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
-from mdr_service.query_parameters import PARAMETERS
+from mdr_service.query_parameters import PARAMETERS, parameters_of
+from mdr_service.schemas.fits import FitQuery
 from mdr_service.schemas.profiles import OF_NUMBERS
 from mdr_service.sentences import NOT_NUMBERS
 from mdr_service.serializers import FORMATS
@@ -35,13 +36,18 @@ _STATUS: Final = {
     problems.ACCURACY: ExitStatus.ACCURACY_NOT_REACHABLE,
 }
 _STANDARD_INPUT: Final = "-"
+# A fit takes options beside the file of its curve, which a URL does not hold.
+_PARAMETERS: Final = PARAMETERS | {"fit": parameters_of(FitQuery)}
 # Options that are not numbers.
-_TEXTS: Final = frozenset({"kind", "scale", "answers", "quantities", "held_1", "held_2"})
+_TEXTS: Final = frozenset(
+    {"kind", "scale", "answers", "quantities", "held_1", "held_2", "fit", "segment"}
+)
 # Heights between which an area function describes a tip.
 _HEIGHTS: Final = ("largest_height", "lowest_height")
 # Options beside the parameters of the request.
 _OTHER_OPTIONS: Final = frozenset(
-    {"output", "size", "units", "table", "area_coefficients", "length_unit", *_HEIGHTS}
+    {"output", "size", "units", "table", "area_coefficients", "length_unit", "curve_units"}
+    | {*_HEIGHTS}
 )
 # Names of parameters that cannot be words of a sentence.
 _NAME: Final = re.compile(r"\w+_\w+")
@@ -103,6 +109,13 @@ def declare(parser: argparse.ArgumentParser) -> None:
             help="height h from which the area function is valid (default: 0); below, the tip is "
             "continued smoothly",
         )
+        if parser.get_default("command") == "fit":
+            group.add_argument(
+                "--curve-units",
+                metavar="DEPTH,FORCE",
+                help="units of the curve in FILE, such as nm,uN, where its headings name none; "
+                "a curve is converted to metres and newtons",
+            )
         # By default -1e-3 counts as an option; argparse has no public way to change that.
         parser._negative_number_matcher = re.compile(r"-\.?\d")  # noqa: SLF001
         for name, field in fields.items():
@@ -156,19 +169,32 @@ def _content(arguments: argparse.Namespace) -> bytes:
     if several := [each for each, found in values.items() if len(found) > 1]:
         raise InputError((several[0],), _ONCE)
     given = {each: found[0] for each, found in values.items()}
-    profile = _table(arguments, given)
+    members = _table(arguments, given)
     if not given:
         query = QUERIES[name].request.model_validate_json(_read(arguments.file or _STANDARD_INPUT))
         return respond(name, query, media_type, look)
-    if arguments.file:
+    if name == "fit":
+        members |= _curve(arguments)
+    elif arguments.file:
         raise InputError((), "give the request by a file or by options, not both")
-    parameters = PARAMETERS[name].model_validate(given)
+    parameters = _PARAMETERS[name].model_validate(given)
     with parameters.pointing():
-        return respond(name, parameters.query(profile), media_type, look, parameters.members)
+        return respond(name, parameters.query(members), media_type, look, parameters.members)
 
 
-def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object] | None:
-    """Return the profile given by a table or an area function; None if neither is given.
+def _curve(arguments: argparse.Namespace) -> dict[str, object]:
+    """Return the depths and forces of the curve in a file, in metres and newtons."""
+    if not arguments.file:
+        raise InputError((), "a fit by options needs the file of its curve: mdr fit curve.csv")
+    units = (arguments.curve_units or ",").split(",")
+    if len(units) != len(CURVE):
+        raise InputError(("curve_units",), "gives the units of depth and force, such as nm,uN")
+    curve = read_curve(arguments.file, [unit or None for unit in units])
+    return {name: values.tolist() for name, values in curve._asdict().items()}
+
+
+def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object]:
+    """Return the profile given by a table or an area function; nothing if neither is given.
 
     The query parameters then need a placeholder for the kind of profile.
     """
@@ -178,9 +204,9 @@ def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
     if not (file or area):
         if unit:
             raise InputError(("length_unit",), "is valid only with --table or --area-coefficients")
-        return None
+        return {}
     option = "table" if file else "area_coefficients"
-    fields = PARAMETERS[arguments.command].fields
+    fields = _PARAMETERS[arguments.command].fields
     if replaced := [name for name in given if fields.get(name, "").startswith("profile.")]:
         raise InputError((option,), f"is a profile: leave out --{replaced[0].replace('_', '-')}")
     given["kind"] = OF_NUMBERS[0]
@@ -190,7 +216,7 @@ def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
         )
     else:
         r, f = _tip(str(area), [vars(arguments)[name] for name in _HEIGHTS], unit or "m")
-    return {"kind": "tabulated", "r": r.tolist(), "f": f.tolist()}
+    return {"profile": {"kind": "tabulated", "r": r.tolist(), "f": f.tolist()}}
 
 
 def _thinned(arguments: argparse.Namespace, points: Points) -> Points:
@@ -217,7 +243,7 @@ def _tip(coefficients: str, heights: list[str | None], unit: str) -> Points:
 
 def _options(command: str) -> dict[str, FieldInfo]:
     """Return the parameters that are options; every command has options for a picture."""
-    fields = PARAMETERS[command].model_fields if command in PARAMETERS else {}
+    fields = _PARAMETERS[command].model_fields if command in _PARAMETERS else {}
     return {
         name: field
         for name, field in fields.items()
@@ -253,6 +279,7 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
     """Print the errors, each with its option or its place in the file; return the exit status."""
     names = _options(arguments.command)
     by_options = any(name in arguments for name in names)
+    by_curve = by_options and arguments.command == "fit"
     file = arguments.file or _STANDARD_INPUT
     table = vars(arguments).get("table")
     area = vars(arguments).get("area_coefficients")
@@ -267,6 +294,10 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
             parts = [_option(option, _OTHER_OPTIONS), detail]
         elif table and f"{place}.".startswith(("kind.", "profile.", "table.")):
             parts = [table, place.partition(".")[2], detail]
+        elif by_curve and place.partition(".")[0] in {"table", *MeasuredCurve._fields}:
+            parts = [file, place.partition(".")[2], detail]
+        elif by_curve and place == "units":
+            parts = ["--curve-units", detail]
         elif by_options or place in _OTHER_OPTIONS:
             renamed = _NAME.sub(lambda each: _option(each[0], names), detail)
             said = detail.replace(NOT_NUMBERS, _NOT_NUMBERS) if place in _TEXTS else renamed

@@ -69,7 +69,7 @@ class Points(NamedTuple):
     """Heights [length]."""
 
 
-class Curve(NamedTuple):
+class MeasuredCurve(NamedTuple):
     """Measured forces over depths."""
 
     indentation_depth: Array
@@ -89,7 +89,7 @@ class Title(NamedTuple):
     line: int = 0
 
 
-class Table(NamedTuple):
+class ParsedFile(NamedTuple):
     """Columns of a file, and the two lists that are taken."""
 
     titles: list[Title]
@@ -134,7 +134,7 @@ def read_table(
     return Points(*_in_units(file, PROFILE, given or (None, None), (metres(to), metres(to))))
 
 
-def read_curve(file: str | Path, units: Sequence[str | None] = (None, None)) -> Curve:
+def read_curve(file: str | Path, units: Sequence[str | None] = (None, None)) -> MeasuredCurve:
     r"""Return the depths and forces of a curve in a file, in metres and newtons.
 
     Parameters
@@ -155,7 +155,7 @@ def read_curve(file: str | Path, units: Sequence[str | None] = (None, None)) -> 
     ...     read_curve(file).normal_force
     array([0.e+00, 2.e-06, 5.e-06])
     """
-    return Curve(*_in_units(file, CURVE, units, (1.0, 1.0)))
+    return MeasuredCurve(*_in_units(file, CURVE, units, (1.0, 1.0)))
 
 
 def metres(name: str) -> float:
@@ -211,7 +211,7 @@ def _decoded(content: bytes) -> str:
         return content.decode("cp1252", errors="replace")
 
 
-def parse(content: bytes, kind: Sequence[str]) -> Table:
+def parse(content: bytes, kind: Sequence[str]) -> ParsedFile:
     """Return the table of a file, a `PROFILE` or a `CURVE`, as it is written, or an InputError."""
     text = _decoded(content).replace("−", "-").replace("μ", "µ").replace("\xa0", " ")
     lines = [
@@ -278,7 +278,9 @@ def _rows(
     return rows, heading, None
 
 
-def _table(rows: Sequence[_Row], titles: list[Title], separator: str, kind: Sequence[str]) -> Table:
+def _table(
+    rows: Sequence[_Row], titles: list[Title], separator: str, kind: Sequence[str]
+) -> ParsedFile:
     first, cells = rows[0]
     numeric = [i for i, cell in enumerate(cells) if re.fullmatch(_NUMBERLIKE, cell)]
     whole = all(re.fullmatch(r"[-+]?\d+", cells[i]) for _, cells in rows for i in numeric)
@@ -300,7 +302,7 @@ def _table(rows: Sequence[_Row], titles: list[Title], separator: str, kind: Sequ
                     line, "an area is negative" if number < 0 else "a number is too large"
                 )
         values.append(np.sqrt(np.array(numbers) / np.pi).tolist() if is_area else numbers)
-    return Table(titles, taken, values, [line for line, _ in rows])
+    return ParsedFile(titles, taken, values, [line for line, _ in rows])
 
 
 def _titles(

@@ -59,10 +59,16 @@ _Whole = Annotated[int, BeforeValidator(_whole)] | None
 _Length = Annotated[int, Field(ge=2, le=SETTINGS.max_length), BeforeValidator(_whole)] | None
 # Types of parameters by the JSON type of the field.
 _TYPES: Final[Mapping[str, Any]] = {"number": _Number, "integer": _Whole}
+_WORDS: Final[Mapping[str, Any]] = {
+    "profile.kind": Literal[OF_NUMBERS],
+    "fit": str | None,
+    "segment": Literal["loading", "unloading"] | None,
+}
 _LOADS: Final = frozenset({"load", "tangential", "torsion", "oscillation"})
 _RENAMED: Final = {"cycles.normal.amplitude": "normal_amplitude", "radius": "r"}
 _TEXTS: Final = {
     "profile.kind": "Kind of profile; POST takes series and tables as well",
+    "fit": "Parameters to fit, separated by commas; by default e_star and contact_point",
     "radius": "Radius r of the fields; `radius` belongs to the profile [length]",
 }
 _BODIES: Final = (
@@ -92,29 +98,30 @@ class Parameters(ResponseParameters):
         """Members of the response to return; all if there are none."""
         return self.answers.split(",") if self.answers else []
 
-    def query(self, profile: Mapping[str, Any] | None = None) -> contacts.Query:
+    def query(self, members: Mapping[str, Any] | None = None) -> contacts.Query:
         """Return the request; raise InputError or ValidationError, see `pointing`.
 
         Parameters
         ----------
-        profile : profile that replaces the profile given by parameters.
+        members : members of the request that replace those given by parameters.
         """
         given = self.model_dump(exclude_unset=True, exclude=set(Parameters.model_fields))
         self._join_range(given)
         values = {self.fields[name]: value for name, value in given.items()}
+        needed = {name for name, field in self.model.model_fields.items() if field.is_required()}
         bodies = {f"material.bodies.{index}" for index in "01"}
         named = {body for body in bodies if any(field.startswith(body) for field in values)}
         if named:
             values |= dict.fromkeys(bodies - named, "rigid")
-        elif "material" in self.model.model_fields and "material.e_star" not in values:
+        elif "material" in needed and "material.e_star" not in values:
             raise InputError(("material", "e_star"), f"is required, or {_BODIES}")
         if isinstance(values.get("radius"), float):
             values["radius"] = [values["radius"]]
-        if "quantities" in values:
-            values["quantities"] = values["quantities"].split(",")
-        request = nested(values) | ({"profile": profile} if profile else {})
+        for name in {"quantities", "fit"} & values.keys():
+            values[name] = values[name].split(",")
+        request = nested(values) | dict(members or {})
         for group in ("material", "load", "oscillation", "cycles"):
-            if group in self.model.model_fields:
+            if group in needed:
                 request.setdefault(group, {})
         return self.model.model_validate(request)
 
@@ -178,7 +185,10 @@ class Parameters(ResponseParameters):
         index = place.rpartition(".")[2]
         after_first = index.isdecimal() and index != "0"
         at_end = after_first and given[:1] and given[0].endswith("_from")
-        return given[1] if at_end else next(iter(given or inside), place)
+        if at_end:
+            return given[1]
+        # Of the constants of the material the modulus is the one that is needed.
+        return next(iter(given or sorted(inside, key=lambda name: name != "e_star")), place)
 
 
 def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str]]:
@@ -195,8 +205,8 @@ def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str
         name = _RENAMED.get(field, name)
         if group in {"material.bodies.#", "profile.radii"}:
             yield from _of_both_bodies(field, type_, text)
-        elif field == "profile.kind":
-            yield name, field, Literal[OF_NUMBERS], text
+        elif field in _WORDS:
+            yield name, field, _WORDS[field], text
         elif field == "quantities":
             text = f"Fields, separated by commas: {', '.join(leaf['items']['enum'])}"
             yield name, field, str | None, text
@@ -220,7 +230,7 @@ def _of_both_bodies(field: str, type_: Any, text: str) -> Iterator[tuple[str, st
         yield f"{name}_{body}", field.replace("#", str(body - 1)), type_, f"Body {body}: {text}"
 
 
-def _parameters(model: type[contacts.Query]) -> type[Parameters]:
+def parameters_of(model: type[contacts.Query]) -> type[Parameters]:
     """Return the model of the parameters that form a request."""
     described = list(_described(model))
     definitions: dict[str, Any] = {
@@ -234,6 +244,6 @@ def _parameters(model: type[contacts.Query]) -> type[Parameters]:
 
 
 PARAMETERS: Final = {
-    name: _parameters(kind.request) for name, kind in QUERIES.items() if kind.by_parameters
+    name: parameters_of(kind.request) for name, kind in QUERIES.items() if kind.by_parameters
 }
 """Parameters of the queries that consist of numbers, by query."""

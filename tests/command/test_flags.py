@@ -29,6 +29,60 @@ def test_options_give_the_bytes_of_the_request(tmp_path: Path) -> None:
     assert by_file.read_bytes() == by_options.read_bytes()
 
 
+FORCES = [0.0, 0.0, 1.0, 2.8, 5.2, 8.0, 11.2]
+FIT = {
+    "profile": {"kind": "paraboloid", "radius": 5e-6},
+    "indentation_depth": [round(-1e-8 + 1e-8 * i, 12) for i in range(7)],
+    "normal_force": [round(1e-6 * force, 12) for force in FORCES],
+    "fit": ["e_star", "contact_point"],
+    "segment": "loading",
+    "poissons_ratio": 0.4,
+}
+FIT_OPTIONS = ["--kind", "paraboloid", "--radius", "5e-6", "--fit", "e_star,contact_point"]
+
+
+@pytest.mark.parametrize(
+    ("heading", "units"),
+    [("depth [nm];load [µN]\n", []), ("", ["--curve-units", "nm,uN"])],
+    ids=["units of the headings", "units of the option"],
+)
+def test_a_curve_in_a_file_gives_the_bytes_of_the_request(
+    tmp_path: Path, heading: str, units: list[str]
+) -> None:
+    file, curve, by_file, by_options = (tmp_path / name for name in ("a.json", "b.csv", "c", "d"))
+    file.write_text(json.dumps(FIT), "utf-8")
+    rows = "".join(f"{10 * i - 10};{force}\n" for i, force in enumerate(FORCES))
+    curve.write_text(heading + rows, "utf-8")
+    assert main(["fit", str(file), "-o", str(by_file)]) == 0
+    sample = ["--segment", "loading", "--poissons-ratio", "0.4"]
+    given = ["fit", str(curve), *FIT_OPTIONS, *sample, *units, "-o", str(by_options)]
+    assert main(given) == 0
+    assert by_file.read_bytes() == by_options.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("text", "given", "message"),
+    [
+        ("0;0\n1;1\n2;3\n3;5\n", [], "--curve-units: is required: no heading names"),
+        ("0;0\n1;1\n2;3\n", ["--curve-units", "nm"], "--curve-units: gives the units of depth"),
+        ("d [nm];F [N]\n0;0\nx;1\n2;3\n", [], "Line 3"),
+        ("d [nm];F [N]\n0;0\n1;1\n2;3\n", ["--fit", "contact_point"], "--e-star: is needed"),
+    ],
+)
+def test_errors_name_the_curve_or_the_option(
+    text: str, given: list[str], message: str, tmp_path: Path, capsys: Capture
+) -> None:
+    curve = tmp_path / "curve.csv"
+    curve.write_text(text, "utf-8")
+    assert main(["fit", str(curve), *FIT_OPTIONS[:4], *given]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_fit_by_options_needs_its_curve(capsys: Capture) -> None:
+    assert main(["fit", *FIT_OPTIONS]) == 2
+    assert "needs the file of its curve" in capsys.readouterr().err
+
+
 def test_the_suffix_of_the_file_gives_the_format(tmp_path: Path) -> None:
     by_suffix, by_option = tmp_path / "a.csv", tmp_path / "b.out"
     query = ["normal", *OPTIONS, "--normal-force", "10"]
@@ -85,7 +139,11 @@ def test_every_help_shows_an_example(name: str, capsys: Capture) -> None:
 @pytest.mark.parametrize(
     "example", [one.example for one in COMMANDS.values() if "--kind" in one.example]
 )
-def test_examples_of_options_run(example: str, capsys: Capture) -> None:
+def test_examples_of_options_run(
+    example: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("curve.csv").write_text("depth [nm],load [µN]\n0,0\n10,1\n20,2.8\n30,5.2\n", "utf-8")
     program, *given = shlex.split(example)
     assert program == "mdr"
     assert command.main(given) == 0
