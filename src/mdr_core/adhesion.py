@@ -88,7 +88,10 @@ class Curve:
         return float(self.profile.domain)
 
     def correction(self, contact: "AdhesiveContact", load: Indices, r: Array) -> Array | float:
-        """Pressure over E* beyond the half-space's at radii, each under the load of an index."""
+        """Pressure over E* beyond the half-space's at radii, each under the load of an index.
+
+        Parameters: the contact; indices of loads and radii [length], both of shape (k,).
+        """
         return 0.0
 
     def pressed(self, *known: Any) -> NormalContact:
@@ -395,7 +398,16 @@ def on_curve(
     loads: Mapping[str, ArrayLike | None],
     range_of_adhesion: float,
 ) -> AdhesiveContact:
-    """Return the adhesive contact of a curve of states under one of the loads; see `solve`."""
+    """Return the adhesive contact of a curve of states under one of the loads; see `solve`.
+
+    Parameters
+    ----------
+    curve : the states of a profile with a work of adhesion, on a half-space or a layer.
+    modulus : E* [pressure].
+    material : effective moduli, None where only E* is given.
+    loads : the controls by name, of which exactly one is given.
+    range_of_adhesion : distance over which the surfaces attract [length], 0 where it is not given.
+    """
     profile = curve.profile
     name, load = validation.only_one(("load",), loads)
     validation.require_finite(("load", name), load)

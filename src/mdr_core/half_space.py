@@ -24,8 +24,9 @@ _RADIAL_ROUND: Final = 0.477
 # length 6 b is L/(pi E b^2).
 _WALL: Final = 3.0
 # Increase of the force at a given depth to first order, over a/R and the share of a body in the
-# compliance, by how the body is held; that of a socket in a block. Source: notes, §8.
+# compliance, by how the body is held. Source: notes, §8.
 _HELD: Final = {"contacts": 0.6, "stem": 0.85, "free": 1.1, "block": 0.0}
+# The same of a socket in a block.
 _SOCKET: Final = 0.6
 # Error of the force on a bonded incompressible layer over the slope at the edge and (a/h)^2, its
 # levelling off with (a/h)^2, and the power of nu/(1 - nu) by which it falls with compressibility:

@@ -45,7 +45,10 @@ class LayerCurve(adhesion.Curve):
         return LayerContact(*known, layer=self.layer)
 
     def correction(self, contact: adhesion.AdhesiveContact, load: Indices, r: Array) -> Array:
-        """Pressure over E* beyond the half-space's at radii, each under the load of an index."""
+        """Pressure over E* beyond the half-space's at radii, each under the load of an index.
+
+        Parameters: the contact; indices of loads and radii [length], both of shape (k,).
+        """
         radii, retraction = map(np.ravel, (contact.contact_radius, contact.retraction))
         known = contact.profile, contact.e_star, contact.coordinate
         parts = self.pressed(*known), self.pressed(FlatPunch(radii), 1.0, retraction)

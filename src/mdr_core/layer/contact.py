@@ -108,6 +108,12 @@ class LayerContact(NormalContact):
 
         (2/pi) int_0^a q(t)/E* B(t) dt, with
         B = 1/sqrt(r^2 - t^2) - (s/h) int_0^oo (1 - L) cos(w t/h) J_0(w r/h) dw.
+
+        Parameters
+        ----------
+        load : index of the load.
+        radius : radii outside the contact [length], shape (m,).
+        half_space : displacement of a half-space there [length], shape (m,).
         """
         a, h = float(np.ravel(self.contact_radius)[load]), self.layer.thickness
         shares, weights = composite_rule(POINTS)

@@ -38,7 +38,10 @@ class DepthCurve:
 
     @classmethod
     def up_to(cls, profile: Profile, layer: Layer, depth: float) -> Self:
-        """Return the curve up to a depth, or to the largest contact that the layer allows."""
+        """Return the curve up to a depth, or to the largest contact that the layer allows.
+
+        Parameters: the profile, the layer, and the depth [length].
+        """
         if profile.has_no_partial_slip:
             return cls(profile, layer, np.inf)
         with suppress(InputError):
