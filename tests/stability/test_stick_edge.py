@@ -11,7 +11,7 @@ import pytest
 from mpmath import mp, mpf
 
 from mdr_core import fields, normal, tangential
-from mdr_core.profiles import Cone, Paraboloid, Profile, Sphere
+from mdr_core.profiles import Cone, Paraboloid, Power, Profile, Sphere
 from tests.stability.curves import (
     CLOSED,
     ROUNDING,
@@ -173,3 +173,22 @@ def test_at_the_stick_edge() -> None:
         assert fields.slip(result, [C])[0] == 0
         beside = fields.shear_stress(result, [C * (1 - ROUNDING), C, C * (1 + ROUNDING)])
         assert beside == pytest.approx(np.full(3, beside[1]), rel=1e-6, abs=0)
+
+
+@pytest.mark.parametrize("gap", [1e-9, 1e-6, 1e-3])
+@pytest.mark.parametrize("profile", [Paraboloid(1.0), Power(0.5, 4.0)])
+def test_slip_next_to_the_stick_edge_alone_is_within_its_estimate(
+    profile: Profile, gap: float
+) -> None:
+    """The references have stick radii at both ends of the rounding error."""
+    contact = normal.solve(profile, 1.0, normal_force=1.0)
+    pushed = tangential.solve(contact, 1.0, 0.3, tangential_force=0.15)
+    c, error = float(pushed.stick_radius), float(pushed.stick_error)
+    radius = c * (1 + gap * np.array([0.3, 1.0]))
+    slip = fields.slip(pushed, radius)
+    estimate = fields.own_error(pushed) + fields.edge_error(pushed, "slip", radius)
+    for side in (-1, 1):
+        other = tangential.solve(contact, 1.0, 0.3, stick_radius=c + side * error)
+        change = np.abs(fields.slip(other, radius) - slip).max() / np.abs(slip).max()
+        # The end is rounded itself.
+        assert change <= estimate * max(1.0, abs(float(other.stick_radius) - c) / error)

@@ -113,6 +113,12 @@ def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) ->
     known = edges(contact)
     if isinstance(contact, AdhesiveContact):
         return rim_error(known, radius[:, None] - known.radius)
+    if name == "slip":
+        # It grows as (r - c)^(3/2) from a front, and radii next to c alone have little of it.
+        count = known.radius.size
+        fronts = slice(-1) if isinstance(contact, ContactState) else slice(count // 2, count)
+        beyond = 2 / 3 * (radius.max(initial=0.0) - known.radius[fronts])
+        known.reach[fronts] = where(beyond > 0, np.minimum(known.reach[fronts], beyond), inf)
     return error_near(known, radius, root=stress)
 
 
