@@ -9,7 +9,7 @@ Source: mindlin-deresiewicz; notes, §15.
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
-from typing import ClassVar, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,12 +22,7 @@ from mdr_core.normal import NormalContact
 from mdr_core.residuals import FALSE_ALARM
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
-from mdr_core.validation import (
-    as_curve,
-    require_not_negative,
-    require_type,
-    single,
-)
+from mdr_core.validation import as_curve, require_not_negative, require_type, single
 
 # Amplitudes that are tried first, over that of full slip; parts of the latter in the rig; points of
 # first loading between which the forces are interpolated for this.
@@ -47,8 +42,9 @@ _NO_WORSE: Final = 0.1**0.5
 # Cause of residuals that are not noise.
 _CAUSES: Final = {
     "misfit": "the shape, the compliance of the rig, the normal load or the model is wrong, or the "
-    "force lags behind",
-    "correlated_noise": "the forces drift, or neighbouring errors are alike",
+    "force lags behind, and the standard errors do not hold",
+    "correlated_noise": "the forces drift, or neighbouring errors are alike, and the standard errors "
+    "are too small",
 }
 
 
@@ -175,11 +171,8 @@ def solve(
         require_not_negative(("rig_compliance",), np.asarray(rig_compliance))
     names = ("g_star", "friction_coefficient", "force_offset", "rig_compliance")
     fit = names[: 4 if rig_compliance is None else 3]
-    curve = as_curve(
-        "displacements",
-        tangential_displacement=tangential_displacement,
-        tangential_force=tangential_force,
-    )
+    lists = {"tangential_displacement": tangential_displacement}
+    curve = as_curve("displacements", **lists, tangential_force=tangential_force)
     if curve[0].size < _FEWEST * len(fit) or np.ptp(curve[0]) == 0:
         detail = f"must hold {_FEWEST * len(fit)} points of a loop"
         raise InputError(("tangential_displacement",), detail)
@@ -275,20 +268,22 @@ class _Loop:
         pressed, depth = self.contact, float(self.contact.indentation_depth)
         law = tangential.solve(pressed, pressed.e_star, 1.0, tangential_displacement=part * depth)
         reached = law.tangential_force / pressed.normal_force
+        some = slice(None, None, max(1, self.force.size // _POINTS))
+        measured, ones = self.force[some] / self.size, np.ones_like(self.force[some])
         best, found = inf, None
         known = self.rig_compliance
         for in_rig in _IN_RIG[: 1 if known == 0 else None].tolist():
             places = (1 - in_rig) * part + in_rig * reached
             for ratio in _TRIED.tolist():
                 first = np.interp(self.places * (ratio / self.amplitude), places, reached)
-                columns = np.column_stack([self.branches(first), np.ones_like(self.force)])
-                (limit, offset), *_ = np.linalg.lstsq(columns, self.force / self.size)
+                columns = np.column_stack([self.branches(first)[some], ones])
+                (limit, offset), *_ = np.linalg.lstsq(columns, measured)
                 whole = self.amplitude / ratio
                 if limit > 0 and known and in_rig:
                     # C mu F_N is the displacement of the rig at full slip.
                     limit = in_rig * whole / (known * self.size)
-                    offset = np.mean(self.force / self.size - limit * columns[:, 0])
-                left = float(np.sum(np.square(columns @ [limit, offset] - self.force / self.size)))
+                    offset = np.mean(measured - limit * columns[:, 0])
+                left = float(np.sum(np.square(columns @ [limit, offset] - measured)))
                 if limit > 0 and left < best:
                     friction = limit * self.size / float(pressed.normal_force)
                     g_star = friction * float(pressed.e_star) * depth / ((1 - in_rig) * whole)
@@ -303,52 +298,41 @@ class _Loop:
         start, measured = self.start(), self.force / self.size
         low, high = np.full((2, start.size), inf) * [[-1], [1]]
         low[:2], high[:2], low[3:] = start[:2] - _RANGE, start[:2] + _RANGE, 0.0
-        x = least_squares(
-            lambda x: self.forces(x) - measured,
-            start,
-            self.slopes,
-            (low, high),
-            x_scale="jac",
-            ftol=EPS,
-            xtol=EPS,
-            gtol=None,
-        ).x
-        slopes, residual = self.slopes(x), measured - self.forces(x)
+
+        def left(x: Array) -> Array:
+            return self.forces(x) - measured
+
+        tight: dict[str, Any] = {"x_scale": "jac", "ftol": EPS, "xtol": EPS, "gtol": None}
+        x = least_squares(left, start, self.slopes, (low, high), **tight).x
+        slopes, residual = self.slopes(x), -left(x)
         scale = np.linalg.norm(slopes, axis=0)
-        _, values, effects = np.linalg.svd(slopes / np.where(scale > 0, scale, 1.0))
-        scatter = np.sqrt(residual @ residual / (residual.size - start.size))
-        if not (scale > 0).all() or values[-1] < _SAME:
-            self._refuse()
+        scatter = float(np.sqrt(residual @ residual / (residual.size - start.size)))
+        if not scale.all():
+            raise self.refused()
+        _, values, effects = np.linalg.svd(slopes / scale, full_matrices=False)
+        if values[-1] < _SAME:
+            raise self.refused()
         inverse = effects.T / values
         deviations = np.linalg.norm(inverse, axis=1)
         # The model is exact to rounding.
-        errors = max(float(scatter), EPS) * deviations / scale
+        errors = max(scatter, EPS) * deviations / scale
         if _HALF * errors[:2].max() > _WIDEST:
-            self._refuse()
-        code, misfit = residuals.of_loop(
-            self.displacement, slopes, residual * self.size, self.force
-        )
+            raise self.refused()
+        code, misfit = residuals.of_loop(self.displacement, slopes, residual, measured)
         found: list[Notice] = []
         if misfit < FALSE_ALARM:
-            message = (
-                f"the residuals are not noise (probability {misfit:.1g}): {_CAUSES[code]}, and the "
-                "standard errors do not hold"
-            )
+            message = f"the residuals are not noise (probability {misfit:.1g}): {_CAUSES[code]}"
             found.append(Notice(code, message, misfit, FALSE_ALARM))
         units = [*np.exp(x[:2]), self.size, self.amplitude / self.size][: start.size]
         if start.size > 3 and x[3] < _NO_WORSE * errors[3]:
             message = "no compliance of the rig is seen: rig_compliance is at its bound 0"
             found.append(Notice("bound", message, float(x[3] * units[3]), None))
         law = self.first_loading(x)
-        turning = tangential.solve(
-            self.contact,
-            float(law.g_star),
-            float(law.friction_coefficient),
-            tangential_displacement=float(law.tangential_displacement[-1]),
-        )
+        most = float(law.tangential_displacement[-1])
+        moduli = np.exp(x[:2]).tolist()
         return LoopFit(
             self.fit,
-            turning,
+            tangential.solve(self.contact, *moduli, tangential_displacement=most),
             float(x[2]) * self.size,
             self.compliance(x),
             errors * units,
@@ -356,19 +340,17 @@ class _Loop:
             self.displacement,
             self.force - residual * self.size,
             residual * self.size,
-            float(scatter) * self.size,
+            scatter * self.size,
             misfit,
             float(law.error_estimate / values[-1]),
             tuple(found),
         )
 
-    def _refuse(self) -> None:
-        """Raise InputError for a loop that leaves parameters open."""
+    def refused(self) -> InputError:
+        """Return the error of a loop that leaves parameters open."""
         if self.rig_compliance is None:
-            detail = (
-                "partial slip cannot tell the contact from the rig: give rig_compliance or slide "
-                "through"
-            )
-            raise InputError(("rig_compliance",), detail)
-        detail = "leaves G* or mu open: take an amplitude at which a part of the contact slips"
-        raise InputError(("tangential_displacement",), detail)
+            detail = "give rig_compliance or slide through"
+            told = "partial slip cannot tell the contact from the rig"
+            return InputError(("rig_compliance",), f"{told}: {detail}")
+        detail = "take an amplitude at which a part of the contact slips, and check rig_compliance"
+        return InputError(("tangential_displacement",), f"leaves G* or mu open: {detail}")
