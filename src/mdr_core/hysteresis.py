@@ -6,8 +6,8 @@ After a reversal of the displacement the force follows the law of first loading,
 Source: mindlin-deresiewicz; notes, §15.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from math import inf
 from typing import Any, ClassVar, Final
 
@@ -41,11 +41,10 @@ _HALF, _WIDEST, _SAME = 1.96, 0.5, 1e-8
 _NO_WORSE: Final = 0.1**0.5
 # Cause of residuals that are not noise.
 _CAUSES: Final = {
-    "misfit": "the shape, the compliance of the rig, the normal load or the model is wrong, or the "
-    "force lags behind, and the standard errors do not hold",
-    "correlated_noise": "the forces drift, or neighbouring errors are alike, and the standard errors "
-    "are too small",
+    "misfit": "the shape, the rig, the normal load or the model is wrong, or the force lags behind",
+    "correlated_noise": "the forces drift, or neighbouring errors are alike",
 }
+_CODES: Final = {"two_branches": "misfit", "drift": "correlated_noise"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -105,12 +104,9 @@ class LoopFit(validity.ContactResults):
         """mu [1]."""
         return float(self.turning.friction_coefficient)
 
-    @cached_property
+    @property
     def dissipated_energy(self) -> float:
-        """Energy dissipated in a cycle of the fitted loop, four times that of its first loading.
-
-        [force length]
-        """
+        """Energy of a cycle, four times that dissipated on first loading [force length]."""
         return 4 * float(self.turning.dissipated_energy)
 
     @property
@@ -179,37 +175,19 @@ def solve(
     return _Loop(contact, *curve, fit, rig_compliance).result()
 
 
-@dataclass(frozen=True, eq=False)
 class _Loop:
     """Measured loop, and the model that is fitted to it."""
 
-    contact: NormalContact
-    displacement: Array
-    force: Array
-    fit: tuple[str, ...]
-    rig_compliance: float | None
-
-    @cached_property
-    def amplitude(self) -> float:
-        """A [length]."""
-        return float(np.ptp(self.displacement)) / 2
-
-    @cached_property
-    def size(self) -> float:
-        """Unit of the forces [force]."""
-        return float(np.ptp(self.force)) or 1.0
-
-    @cached_property
-    def sign(self) -> Array:
-        """Directions of the displacement at the points."""
-        return residuals.directions(self.displacement)
-
-    @cached_property
-    def places(self) -> Array:
-        """Displacements on first loading that stand for the points, and the amplitude."""
-        middle = (self.displacement.max() + self.displacement.min()) / 2
-        halves = (self.amplitude + self.sign * (self.displacement - middle)) / 2
-        return np.append(np.maximum(halves, 0.0), self.amplitude)
+    def __init__(
+        self, contact: NormalContact, u: Array, force: Array, fit: Sequence[str], rig: float | None
+    ) -> None:
+        self.contact, self.displacement, self.force = contact, u, force
+        self.fit, self.rig_compliance = tuple(fit), rig
+        # Units, directions, and the places on first loading that stand for the points and the end.
+        self.amplitude, self.size = float(np.ptp(u)) / 2, float(np.ptp(force)) or 1.0
+        self.sign = residuals.directions(u)
+        halves = (self.amplitude + self.sign * (u - (u.max() + u.min()) / 2)) / 2
+        self.places = np.append(np.maximum(halves, 0.0), self.amplitude)
 
     def branches(self, first: Array) -> Array:
         """Return the forces of the loop for those on first loading, by Masing's rule."""
@@ -251,10 +229,8 @@ class _Loop:
         # F/(mu E*) depends on G* u/(mu E*) alone, and dF/du = 2 G* c.
         of_g_star = stiffness * law.tangential_displacement
         of_rig = -force * stiffness * self.amplitude / self.size
-        columns = [
-            self.branches(each * yielding) / self.size
-            for each in (of_g_star, force - of_g_star, of_rig)
-        ]
+        firsts = (of_g_star, force - of_g_star, of_rig)
+        columns = [self.branches(each * yielding) / self.size for each in firsts]
         columns.insert(2, np.ones_like(self.force))
         return np.column_stack(columns[: len(self.fit)])
 
@@ -318,10 +294,16 @@ class _Loop:
         errors = max(scatter, EPS) * deviations / scale
         if _HALF * errors[:2].max() > _WIDEST:
             raise self.refused()
-        code, misfit = residuals.of_loop(self.displacement, slopes, residual, measured)
+        code, misfit = residuals.worst(
+            residuals.misfit(self.displacement, slopes, residual, measured, in_time=True)
+        )
         found: list[Notice] = []
         if misfit < FALSE_ALARM:
-            message = f"the residuals are not noise (probability {misfit:.1g}): {_CAUSES[code]}"
+            code = _CODES.get(code, code)
+            message = (
+                f"the residuals are not noise (probability {misfit:.1g}): {_CAUSES[code]}, and the "
+                "standard errors do not hold"
+            )
             found.append(Notice(code, message, misfit, FALSE_ALARM))
         units = [*np.exp(x[:2]), self.size, self.amplitude / self.size][: start.size]
         if start.size > 3 and x[3] < _NO_WORSE * errors[3]:

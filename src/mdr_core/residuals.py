@@ -37,8 +37,8 @@ _ROUNDED, _STEPPED = 0.6, 2.0
 _DEPTH, _BRANCH, _SCATTER = 8, 4, 3
 # Singular value, over the largest, of regressors that the parameters or each other contain.
 _CONTAINED: Final = 1e-6
-# Most polynomials of the displacement and of the time of a loop.
-_LOOP, _TIME = 6, 4
+# Most polynomials of the time.
+_TIME: Final = 4
 # Fewest points of a branch.
 _FEWEST: Final = 3
 
@@ -71,7 +71,9 @@ def rank(x: Array) -> Array:
     return np.asarray(2 * (rankdata(x) - 1) / max(x.size - 1, 1) - 1)
 
 
-def misfit(depth: Array, slopes: Array, residual: Array, force: Array) -> dict[str, float]:
+def misfit(
+    depth: Array, slopes: Array, residual: Array, force: Array, *, in_time: bool = False
+) -> dict[str, float]:
     """Return the probability of residuals like these by chance, by the warning that tells of it.
 
     Parameters
@@ -79,48 +81,30 @@ def misfit(depth: Array, slopes: Array, residual: Array, force: Array) -> dict[s
     depth, force : the curve in its order, shape (k,).
     slopes : derivatives of the fitted forces in the parameters, shape (k, p).
     residual : measured less fitted forces, shape (k,).
+    in_time : True to test neighbours in the order of the curve, and for a drift, in place of the
+        scatter over the depth.
     """
     q, left, cut, step = _prepared(slopes, residual, force)
     size = float(np.sqrt(np.mean(np.square(residual))))
     if size <= ROUNDING * np.abs(force).max() or size < _ROUNDED * step:
         return {}
-    free, x = depth.size - q.shape[1], rank(depth)
+    free, x, sign = depth.size - q.shape[1], rank(depth), directions(depth)
     found = {"misfit": _f_test(q, cut, _polynomials(x, min(_DEPTH, free // 3)))}
-    found["correlated_noise"] = _lag(q, cut, np.argsort(depth, kind="stable"))
-    found |= _branches(q, cut, x, directions(depth))
+    order = np.arange(depth.size) if in_time else np.argsort(depth, kind="stable")
+    found["correlated_noise"] = _lag(q, cut, order)
+    if min(np.sum(sign > 0), np.sum(sign < 0)) >= _FEWEST:
+        even = legendre.legvander(x, max(min(_BRANCH, free // 4) - 1, 0))
+        found["two_branches"] = _f_test(q, cut, sign[:, None] * even)
+    if in_time:
+        time = np.linspace(-1.0, 1.0, depth.size)
+        found["drift"] = _f_test(q, cut, _polynomials(time, min(_TIME, free // 3)))
+        return found
     if size >= _STEPPED * step:
         spread = np.sqrt(np.maximum(1 - np.sum(q * q, axis=1), _CONTAINED))
         score = ndtri((rankdata(np.abs(left) / spread) - 0.375) / (depth.size + 0.25))
         mean = np.full((depth.size, 1), depth.size**-0.5)
         found["noise_grows"] = _f_test(mean, score - score.mean(), _polynomials(x, _SCATTER))
     return found
-
-
-def of_loop(displacement: Array, slopes: Array, residual: Array, force: Array) -> tuple[str, float]:
-    """Return the warning of a loop in the order of time, and the probability of its residuals.
-
-    Parameters: see `misfit`.
-    """
-    q, _, cut, step = _prepared(slopes, residual, force)
-    size = float(np.sqrt(np.mean(np.square(residual))))
-    if size <= ROUNDING * np.abs(force).max() or size < _ROUNDED * step:
-        return "misfit", 1.0
-    free, x = force.size - q.shape[1], rank(displacement)
-    found = {"misfit": _f_test(q, cut, _polynomials(x, min(_LOOP, free // 3)))}
-    found["correlated_noise"] = _lag(q, cut, np.arange(force.size))
-    time = np.linspace(-1.0, 1.0, force.size)
-    found["drift"] = _f_test(q, cut, _polynomials(time, min(_TIME, free // 3)))
-    found |= _branches(q, cut, x, directions(displacement))
-    code, probability = worst(found)
-    return {"drift": "correlated_noise", "two_branches": "misfit"}.get(code, code), probability
-
-
-def _branches(q: Array, r: Array, x: Array, sign: Array) -> dict[str, float]:
-    """Probability of the part of the residuals in polynomials of opposite sign on both branches."""
-    if min(np.sum(sign > 0), np.sum(sign < 0)) < _FEWEST:
-        return {}
-    even = legendre.legvander(x, max(min(_BRANCH, (x.size - q.shape[1]) // 4) - 1, 0))
-    return {"two_branches": _f_test(q, r, sign[:, None] * even)}
 
 
 def worst(found: Mapping[str, float]) -> tuple[str, float]:
