@@ -38,6 +38,9 @@ COMMANDS: Final = {
         f"mdr tangential {_SHEARED} --normal-force 10 --tangential-force 2",
     ),
     "history": Command("solve a load history", "mdr history request.json -o history.json"),
+    "tangential_fit": Command(
+        "fit shear modulus and friction to a loop", "mdr tangential_fit request.json"
+    ),
     "impact": Command("solve oblique impacts", "mdr impact request.json --format csv"),
     "torsion": Command(
         "solve a contact twisted about its axis",

@@ -1,51 +1,132 @@
 """Shear modulus and friction coefficient from a hysteresis loop under a constant normal load.
 
-After a reversal of the displacement the force follows the law of first loading, enlarged twice.
+After a reversal of the displacement the force follows the law of first loading, enlarged twice
+(Masing), also with a rig of compliance C in series, U = u + C F.
 
 Source: mindlin-deresiewicz; notes, §15.
 """
 
-from typing import Final, NamedTuple
-from warnings import catch_warnings, simplefilter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import OptimizeWarning, curve_fit
+from scipy.optimize import least_squares
 
-from mdr_core import tangential
-from mdr_core.errors import InputError
+from mdr_core import residuals, tangential, validity
+from mdr_core.doubles import EPS
+from mdr_core.errors import InputError, Notice
 from mdr_core.normal import NormalContact
+from mdr_core.residuals import FALSE_ALARM
+from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
-from mdr_core.validation import as_curve, require_type
+from mdr_core.validation import as_curve, require_not_negative, require_type, single
 
-# Amplitudes that are tried first, over that of full slip.
-_TRIED: Final = np.geomspace(0.01, 30.0, 24)
-# Points, two for each parameter.
-_FEWEST: Final = 6
+# Amplitudes that are tried first, over that of full slip; parts of the latter in the rig; points of
+# first loading between which the forces are interpolated for this.
+_TRIED, _IN_RIG, _POINTS = np.geomspace(0.01, 30.0, 40), np.linspace(0.0, 0.96, 25), 200
+# Points for each parameter.
+_FEWEST: Final = 2
+# Most steps of Newton's method, which takes about 12, and their relative size at the end.
+_STEPS, _CONVERGED = 100, 8 * EPS
+# Range of log G* and log mu about the start, which keeps the numbers representable.
+_RANGE: Final = 15.0
+# Half width of an interval of 95 % in log G* or log mu, over the error, and at most; and the least
+# singular value of the slopes, of unit columns. Source: notes, §15.
+_HALF, _WIDEST, _SAME = 1.96, 0.5, 1e-8
+# Compliance over its standard error below which zero is as likely: the sum of squares exceeds its
+# minimum by a tenth of the variance.
+_NO_WORSE: Final = 0.1**0.5
+# Cause of residuals that are not noise.
+_CAUSES: Final = {
+    "misfit": "the shape, the rig, the normal load or the model is wrong, or the force lags behind",
+    "correlated_noise": "the forces drift, or neighbouring errors are alike",
+}
+_CODES: Final = {"two_branches": "misfit", "drift": "correlated_noise"}
 
 
-class LoopFit(NamedTuple):
+@dataclass(frozen=True, eq=False, repr=False)
+class LoopFit(validity.ContactResults):
     """Fitted parameters of a loop with their standard errors."""
 
-    g_star: float
-    """Effective shear modulus G* [pressure]."""
-    friction_coefficient: float
-    """mu [1]."""
+    fit: tuple[str, ...]
+    """Names of the fitted parameters, in the order of `standard_errors` and `correlation`."""
+    turning: TangentialContact
+    """Contact at the turning points of the loop, as on first loading."""
     force_offset: float
     """F_0, the force in the middle of the loop [force]."""
+    rig_compliance: float
+    """C, as given or fitted [length/force]."""
     standard_errors: Array
-    """Standard deviations of these three, from the residuals, shape (3,)."""
+    """Standard deviations of the fitted parameters, from the residuals, shape (n,)."""
+    correlation: Array
+    """Their correlation, shape (n, n) [1]."""
+    tangential_displacement: Array
+    """Measured displacements [length], shape (k,)."""
+    tangential_force: Array
+    """Fitted forces [force], shape (k,)."""
     residual: Array
     """Measured less fitted forces [force], shape (k,)."""
+    noise: float
+    """Standard deviation of the forces, by the residuals [force]."""
+    misfit: float
+    """Probability that residuals of the right model are as far from noise as these [1]."""
+    error_estimate: float
+    """Bound on the numerical error of the parameters, over their standard errors or sizes [1]."""
+    notices: tuple[Notice, ...]
+    """Warnings about the residuals and the parameters."""
+    quantities: ClassVar[tuple[str, ...]] = (
+        *("fit", "g_star", "friction_coefficient", "force_offset", "rig_compliance"),
+        *("standard_errors", "correlation", "noise", "misfit"),
+        *("dissipated_energy", "tangential_displacement", "tangential_force", "residual"),
+    )
+    method: ClassVar[str] = "least_squares"
+
+    @property
+    def solved(self) -> TangentialContact:
+        """Contact on which the validity depends."""
+        return self.turning
+
+    @property
+    def normal(self) -> NormalContact:
+        """Contact under the normal load."""
+        return self.turning.normal
+
+    @property
+    def g_star(self) -> float:
+        """Effective shear modulus G* [pressure]."""
+        return float(self.turning.g_star)
+
+    @property
+    def friction_coefficient(self) -> float:
+        """mu [1]."""
+        return float(self.turning.friction_coefficient)
+
+    @property
+    def dissipated_energy(self) -> float:
+        """Energy of a cycle, four times that dissipated on first loading [force length]."""
+        return 4 * float(self.turning.dissipated_energy)
+
+    @property
+    def warnings_without_bodies(self) -> tuple[Notice, ...]:
+        """Warnings that do not depend on the bodies."""
+        return *self.turning.warnings_without_bodies, *self.notices
 
 
 def solve(
-    contact: NormalContact, *, tangential_displacement: ArrayLike, tangential_force: ArrayLike
+    contact: NormalContact,
+    *,
+    tangential_displacement: ArrayLike,
+    tangential_force: ArrayLike,
+    rig_compliance: float | None = None,
 ) -> LoopFit:
     """Fit G* and mu to a steady loop, or several, of the tangential force over the displacement.
 
-    F_x = F_0 + s (2 F((A + s (u - u_0))/2) - F(A)), s = 1 on rising and -1 on falling displacement,
-    with the amplitude A and the middle u_0 of the displacements, and F the force on first loading.
+    F_x = F_0 + s (2 F((A + s (U - U_0))/2) - F(A)), s = 1 on rising and -1 on falling displacement,
+    with the amplitude A and the middle U_0 of the displacements, and F the force on first loading
+    of the contact in series with the rig.
 
     Parameters
     ----------
@@ -53,15 +134,17 @@ def solve(
     tangential_displacement : in the order of the measurement, exact beside the forces [length],
         shape (k,).
     tangential_force : measured forces [force], shape (k,).
+    rig_compliance : C of the rig in series, 0 of displacements measured at the contact; fitted if
+        it is not given, which needs a loop with full slip, or almost [length/force].
 
     Returns
     -------
-    The parameters with standard errors, and the residuals.
+    The parameters with standard errors and correlation, and the residuals.
 
     Raises
     ------
-    InputError : lists of different lengths, fewer than six points, or a loop without slip, which
-        leaves mu open.
+    InputError : lists of different lengths, fewer than two points for each parameter, or a loop
+        that leaves G* or mu open, for want of slip or of the compliance of the rig.
 
     Examples
     --------
@@ -71,71 +154,185 @@ def solve(
     >>> path = {"normal_force": np.full(82, 10.0), "tangential_displacement": np.append(0.0, u)}
     >>> force = history.solve(Paraboloid(0.01), 2e9, 1.6e9, 0.3, **path).tangential_force[1:]
     >>> ball = normal.solve(Paraboloid(0.01), 2e9, normal_force=10.0)
-    >>> found = solve(ball, tangential_displacement=u, tangential_force=force)
+    >>> curve = {"tangential_displacement": u, "tangential_force": force}
+    >>> found = solve(ball, **curve, rig_compliance=0.0)
     >>> print(f"{found.g_star:.6g} {found.friction_coefficient:.6g}")
     1.6e+09 0.3
     """
     require_type("contact", contact, NormalContact, "a contact from normal.solve")
     if np.ndim(contact.normal_force) or not contact.normal_force > 0:
         raise InputError(("contact",), "must be under a single normal load")
-    u, force = _points(tangential_displacement, tangential_force)
-    amplitude, middle, size = np.ptp(u) / 2, (u.max() + u.min()) / 2, float(np.ptp(force)) or 1.0
-    sign = _directions(u)
-    # Displacements on first loading that stand for the points, and the amplitude.
-    places = np.append((amplitude + sign * (u - middle)) / 2, amplitude)
-
-    def loop(logarithms: Array) -> tuple[Array, Array, Array]:
-        """Forces without offset over `size`, and their slopes in log G* and log mu."""
-        g_star, friction = np.exp(logarithms).tolist()
-        law = tangential.solve(contact, g_star, friction, tangential_displacement=places)
-        # F/(mu E*) depends on G* u/(mu E*) alone, and dF/du = 2 G* c.
-        of_g_star = 2 * g_star * law.stick_radius * places
-        forces = law.tangential_force, of_g_star, law.tangential_force - of_g_star
-        value, *slopes = (sign * (2 * each[:-1] - each[-1]) / size for each in forces)
-        return value, *slopes
-
-    def start(ratio: float) -> tuple[float, list[float]]:
-        """Least sum of squares for an amplitude over that of full slip, and the parameters."""
-        g_star = ratio * float(contact.e_star * contact.indentation_depth) / amplitude
-        columns = np.column_stack([loop(np.array([np.log(g_star), 0.0]))[0], np.ones_like(u)])
-        (friction, offset), *_ = np.linalg.lstsq(columns, force / size)
-        if friction <= 0:
-            raise InputError(("tangential_force",), "must rise with the displacement")
-        left = columns @ [friction, offset] - force / size
-        return float(left @ left), [np.log(friction * g_star), np.log(friction), offset]
-
-    with catch_warnings():
-        # Of a covariance that is infinite.
-        simplefilter("ignore", OptimizeWarning)
-        found, covariance = curve_fit(
-            lambda _, *x: loop(np.array(x[:2]))[0] + x[2],
-            *(u, force / size, min(map(start, _TRIED))[1]),
-            jac=lambda _, *x: np.column_stack([*loop(np.array(x[:2]))[1:], np.ones_like(u)]),
-        )
-    errors = np.sqrt(np.diag(covariance))
-    determined = np.linalg.matrix_rank(np.column_stack(loop(found[:2])[1:]))
-    if determined < 2 or not errors[:2].max() < 1:
-        detail = "leaves G* or mu open: take an amplitude at which a part of the contact slips"
+    if rig_compliance is not None:
+        rig_compliance = single(("rig_compliance",), rig_compliance)
+        require_not_negative(("rig_compliance",), np.asarray(rig_compliance))
+    names = ("g_star", "friction_coefficient", "force_offset", "rig_compliance")
+    fit = names[: 4 if rig_compliance is None else 3]
+    lists = {"tangential_displacement": tangential_displacement}
+    curve = as_curve("displacements", **lists, tangential_force=tangential_force)
+    if curve[0].size < _FEWEST * len(fit) or np.ptp(curve[0]) == 0:
+        detail = f"must hold {_FEWEST * len(fit)} points of a loop"
         raise InputError(("tangential_displacement",), detail)
-    g_star, friction = np.exp(found[:2]).tolist()
-    errors *= [g_star, friction, size]
-    residual = force - size * (loop(found[:2])[0] + found[2])
-    return LoopFit(g_star, friction, size * float(found[2]), errors, residual)
+    return _Loop(contact, *curve, fit, rig_compliance).result()
 
 
-def _points(displacement: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
-    """Return displacements and forces, or an InputError."""
-    u, measured = as_curve(
-        "displacements", tangential_displacement=displacement, tangential_force=force
-    )
-    if u.size < _FEWEST or np.ptp(u) == 0:
-        raise InputError(("tangential_displacement",), f"must hold {_FEWEST} points of a loop")
-    return u, measured
+class _Loop:
+    """Measured loop, and the model that is fitted to it."""
 
+    def __init__(
+        self, contact: NormalContact, u: Array, force: Array, fit: Sequence[str], rig: float | None
+    ) -> None:
+        self.contact, self.displacement, self.force = contact, u, force
+        self.fit, self.rig_compliance = tuple(fit), rig
+        # Units, directions, and the places on first loading that stand for the points and the end.
+        self.amplitude, self.size = float(np.ptp(u)) / 2, float(np.ptp(force)) or 1.0
+        self.sign = residuals.directions(u)
+        halves = (self.amplitude + self.sign * (u - (u.max() + u.min()) / 2)) / 2
+        self.places = np.append(np.maximum(halves, 0.0), self.amplitude)
 
-def _directions(u: Array) -> Array:
-    """Signs of the steps to each displacement; a rest has that of the step before."""
-    steps = np.sign(np.diff(u, prepend=u[0]))
-    moving = np.flatnonzero(steps)
-    last = np.searchsorted(moving, np.arange(u.size), side="right") - 1
-    return np.asarray(steps[moving[np.maximum(last, 0)]])
+    def branches(self, first: Array) -> Array:
+        """Return the forces of the loop for those on first loading, by Masing's rule."""
+        return np.asarray(self.sign * (2 * first[:-1] - first[-1]))
+
+    def compliance(self, x: Array) -> float:
+        """Return C [length/force]."""
+        if self.rig_compliance is not None:
+            return self.rig_compliance
+        return float(x[3]) * self.amplitude / self.size
+
+    def first_loading(self, x: Array) -> TangentialContact:
+        """Return the contact at the displacements u + C F(u) = `places`.
+
+        F is concave, so that Newton's method rises to the root from below, u = U/(1 + 2 G* a C).
+        """
+        (g_star, friction), rig = np.exp(x[:2]).tolist(), self.compliance(x)
+        u = self.places / (1 + rig * 2 * g_star * float(self.contact.contact_radius))
+        for _ in range(_STEPS):
+            law = tangential.solve(self.contact, g_star, friction, tangential_displacement=u)
+            if not rig:
+                break
+            left = self.places - u - rig * law.tangential_force
+            step = left / (1 + rig * law.tangential_stiffness)
+            if np.all(np.abs(step) <= _CONVERGED * self.places):
+                break
+            u = u + step
+        return law
+
+    def forces(self, x: Array) -> Array:
+        """Return the forces over `size` for log G*, log mu, F_0/`size` and C `size`/A."""
+        return self.branches(self.first_loading(x).tangential_force) / self.size + x[2]
+
+    def slopes(self, x: Array) -> Array:
+        """Return the slopes of `forces`, at given displacements of contact and rig together."""
+        law = self.first_loading(x)
+        force, stiffness = law.tangential_force, law.tangential_stiffness
+        yielding = 1 / (1 + self.compliance(x) * stiffness)
+        # F/(mu E*) depends on G* u/(mu E*) alone, and dF/du = 2 G* c.
+        of_g_star = stiffness * law.tangential_displacement
+        of_rig = -force * stiffness * self.amplitude / self.size
+        firsts = (of_g_star, force - of_g_star, of_rig)
+        columns = [self.branches(each * yielding) / self.size for each in firsts]
+        columns.insert(2, np.ones_like(self.force))
+        return np.column_stack(columns[: len(self.fit)])
+
+    def start(self) -> Array:
+        """Return the best of many parameters, or an InputError.
+
+        For a given amplitude over that of full slip, and part of the latter in the rig, the force
+        is linear in mu and F_0.
+        """
+        part = np.linspace(0.0, 1.0, _POINTS)
+        pressed, depth = self.contact, float(self.contact.indentation_depth)
+        law = tangential.solve(pressed, pressed.e_star, 1.0, tangential_displacement=part * depth)
+        reached = law.tangential_force / pressed.normal_force
+        some = slice(None, None, max(1, self.force.size // _POINTS))
+        measured, ones = self.force[some] / self.size, np.ones_like(self.force[some])
+        best, found = inf, None
+        known = self.rig_compliance
+        for in_rig in _IN_RIG[: 1 if known == 0 else None].tolist():
+            places = (1 - in_rig) * part + in_rig * reached
+            for ratio in _TRIED.tolist():
+                first = np.interp(self.places * (ratio / self.amplitude), places, reached)
+                columns = np.column_stack([self.branches(first)[some], ones])
+                (limit, offset), *_ = np.linalg.lstsq(columns, measured)
+                whole = self.amplitude / ratio
+                if limit > 0 and known and in_rig:
+                    # C mu F_N is the displacement of the rig at full slip.
+                    limit = in_rig * whole / (known * self.size)
+                    offset = np.mean(measured - limit * columns[:, 0])
+                left = float(np.sum(np.square(columns @ [limit, offset] - measured)))
+                if limit > 0 and left < best:
+                    friction = limit * self.size / float(pressed.normal_force)
+                    g_star = friction * float(pressed.e_star) * depth / ((1 - in_rig) * whole)
+                    rig = in_rig / ratio / limit
+                    best, found = left, [np.log(g_star), np.log(friction), offset, rig]
+        if found is None:
+            raise InputError(("tangential_force",), "must rise with the displacement")
+        return np.array(found[: len(self.fit)])
+
+    def result(self) -> LoopFit:
+        """Return the fit, or an InputError."""
+        start, measured = self.start(), self.force / self.size
+        low, high = np.full((2, start.size), inf) * [[-1], [1]]
+        low[:2], high[:2], low[3:] = start[:2] - _RANGE, start[:2] + _RANGE, 0.0
+
+        def left(x: Array) -> Array:
+            return self.forces(x) - measured
+
+        tight: dict[str, Any] = {"x_scale": "jac", "ftol": EPS, "xtol": EPS, "gtol": None}
+        x = least_squares(left, start, self.slopes, (low, high), **tight).x
+        slopes, residual = self.slopes(x), -left(x)
+        scale = np.linalg.norm(slopes, axis=0)
+        scatter = float(np.sqrt(residual @ residual / (residual.size - start.size)))
+        if not scale.all():
+            raise self.refused()
+        _, values, effects = np.linalg.svd(slopes / scale, full_matrices=False)
+        if values[-1] < _SAME:
+            raise self.refused()
+        inverse = effects.T / values
+        deviations = np.linalg.norm(inverse, axis=1)
+        # The model is exact to rounding.
+        errors = max(scatter, EPS) * deviations / scale
+        if _HALF * errors[:2].max() > _WIDEST:
+            raise self.refused()
+        code, misfit = residuals.worst(
+            residuals.misfit(self.displacement, slopes, residual, measured, in_time=True)
+        )
+        found: list[Notice] = []
+        if misfit < FALSE_ALARM:
+            code = _CODES.get(code, code)
+            message = (
+                f"the residuals are not noise (probability {misfit:.1g}): {_CAUSES[code]}, and the "
+                "standard errors do not hold"
+            )
+            found.append(Notice(code, message, misfit, FALSE_ALARM))
+        units = [*np.exp(x[:2]), self.size, self.amplitude / self.size][: start.size]
+        if start.size > 3 and x[3] < _NO_WORSE * errors[3]:
+            message = "no compliance of the rig is seen: rig_compliance is at its bound 0"
+            found.append(Notice("bound", message, float(x[3] * units[3]), None))
+        law = self.first_loading(x)
+        most = float(law.tangential_displacement[-1])
+        moduli = np.exp(x[:2]).tolist()
+        return LoopFit(
+            self.fit,
+            tangential.solve(self.contact, *moduli, tangential_displacement=most),
+            float(x[2]) * self.size,
+            self.compliance(x),
+            errors * units,
+            inverse @ inverse.T / np.multiply.outer(deviations, deviations),
+            self.displacement,
+            self.force - residual * self.size,
+            residual * self.size,
+            scatter * self.size,
+            misfit,
+            float(law.error_estimate / values[-1]),
+            tuple(found),
+        )
+
+    def refused(self) -> InputError:
+        """Return the error of a loop that leaves parameters open."""
+        if self.rig_compliance is None:
+            detail = "give rig_compliance or slide through"
+            told = "partial slip cannot tell the contact from the rig"
+            return InputError(("rig_compliance",), f"{told}: {detail}")
+        detail = "take an amplitude at which a part of the contact slips, and check rig_compliance"
+        return InputError(("tangential_displacement",), f"leaves G* or mu open: {detail}")

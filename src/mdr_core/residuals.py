@@ -37,6 +37,8 @@ _ROUNDED, _STEPPED = 0.6, 2.0
 _DEPTH, _BRANCH, _SCATTER = 8, 4, 3
 # Singular value, over the largest, of regressors that the parameters or each other contain.
 _CONTAINED: Final = 1e-6
+# Most polynomials of the time.
+_TIME: Final = 4
 # Fewest points of a branch.
 _FEWEST: Final = 3
 
@@ -69,7 +71,9 @@ def rank(x: Array) -> Array:
     return np.asarray(2 * (rankdata(x) - 1) / max(x.size - 1, 1) - 1)
 
 
-def misfit(depth: Array, slopes: Array, residual: Array, force: Array) -> dict[str, float]:
+def misfit(
+    depth: Array, slopes: Array, residual: Array, force: Array, *, in_time: bool = False
+) -> dict[str, float]:
     """Return the probability of residuals like these by chance, by the warning that tells of it.
 
     Parameters
@@ -77,6 +81,8 @@ def misfit(depth: Array, slopes: Array, residual: Array, force: Array) -> dict[s
     depth, force : the curve in its order, shape (k,).
     slopes : derivatives of the fitted forces in the parameters, shape (k, p).
     residual : measured less fitted forces, shape (k,).
+    in_time : True to test neighbours in the order of the curve, and for a drift, in place of the
+        scatter over the depth.
     """
     q, left, cut, step = _prepared(slopes, residual, force)
     size = float(np.sqrt(np.mean(np.square(residual))))
@@ -84,10 +90,15 @@ def misfit(depth: Array, slopes: Array, residual: Array, force: Array) -> dict[s
         return {}
     free, x, sign = depth.size - q.shape[1], rank(depth), directions(depth)
     found = {"misfit": _f_test(q, cut, _polynomials(x, min(_DEPTH, free // 3)))}
-    found["correlated_noise"] = _lag(q, cut, np.argsort(depth, kind="stable"))
+    order = np.arange(depth.size) if in_time else np.argsort(depth, kind="stable")
+    found["correlated_noise"] = _lag(q, cut, order)
     if min(np.sum(sign > 0), np.sum(sign < 0)) >= _FEWEST:
         even = legendre.legvander(x, max(min(_BRANCH, free // 4) - 1, 0))
         found["two_branches"] = _f_test(q, cut, sign[:, None] * even)
+    if in_time:
+        time = np.linspace(-1.0, 1.0, depth.size)
+        found["drift"] = _f_test(q, cut, _polynomials(time, min(_TIME, free // 3)))
+        return found
     if size >= _STEPPED * step:
         spread = np.sqrt(np.maximum(1 - np.sum(q * q, axis=1), _CONTAINED))
         score = ndtri((rankdata(np.abs(left) / spread) - 0.375) / (depth.size + 0.25))

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mdr_core import fit
+from mdr_core import fit, hysteresis, normal
 from mdr_core.profiles import Paraboloid
-from mdr_service.schemas.answers import FitAnswer
+from mdr_service.schemas.answers import FitAnswer, LoopAnswer
 from mdr_service.schemas.examples import EXAMPLES
 from tests.conftest import Client
 
@@ -115,3 +115,30 @@ def test_work_of_adhesion_from_a_curve_of_jkr(client: Client) -> None:
     assert document["force_offset"] == [0.0]
     # Only a depth holds the states up to the least force.
     assert len(document["residual"]) == a.size - 1 - np.argmin(curve["normal_force"])
+
+
+def test_loop_equals_the_core(client: Client) -> None:
+    loop = EXAMPLES["tangential_fit"]["ball_on_glass"]["value"]
+    document = client.post("/v1/tangential/fit", loop).json()
+    LoopAnswer.model_validate(document)
+    contact = normal.solve(Paraboloid(5.0), 48e3, normal_force=2.0)
+    lists = {name: loop[name] for name in ("tangential_displacement", "tangential_force")}
+    found = hysteresis.solve(contact, **lists)
+    for name in found.quantities[1:]:
+        assert document[name] == np.atleast_1d(getattr(found, name)).tolist(), name
+    # The loop is that of 40 GPa and a friction of 0.3, with a rig as stiff as the contact.
+    off = np.array([document[name][0] for name in document["fit"]]) - [4e4, 0.3, 0.03, 2.4e-4]
+    assert np.abs(off / document["standard_errors"]).max() < 2.5
+    assert document["warnings"] == []
+    # Taken as rigid, the rig halves the stiffness, and is a misfit.
+    rigid = client.post("/v1/tangential/fit", loop | {"rig_compliance": 0}).json()
+    assert rigid["g_star"][0] < 3e4
+    assert "misfit" in [warning["code"] for warning in rigid["warnings"]]
+    depth = {"indentation_depth": float(contact.indentation_depth)}
+    other = {name: value for name, value in loop.items() if name != "normal_force"} | depth
+    by_depth = client.post("/v1/tangential/fit", other).json()
+    assert by_depth["g_star"] == pytest.approx(document["g_star"], rel=1e-9, abs=0)
+    rows = list(
+        csv.DictReader(io.StringIO(client.post("/v1/tangential/fit?format=csv", loop).text))
+    )
+    assert [float(row["residual"]) for row in rows] == document["residual"]

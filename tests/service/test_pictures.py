@@ -108,6 +108,7 @@ def rows(values: Any) -> np.ndarray[Any, Any]:
 DRAWN = {
     "normal": ("indentation_depth", "normal_force"),
     "fit": ("indentation_depth", "normal_force", "residual"),
+    "tangential_fit": ("tangential_displacement", "tangential_force", "residual"),
     "impact": ("tangential_velocity", "tangential_rebound_velocity", "dissipated_energy"),
     "torsion": ("rotation", "torque"),
     "wear": ("stick_radius", "worn_volume", "wear_radius"),
@@ -148,10 +149,10 @@ def test_points_are_the_numbers_of_the_response(
     else:
         x, *ordinates = DRAWN.get(name, ("tangential_displacement", "tangential_force"))
         expected = [set(zip(found[x], found[y], strict=True)) for y in ordinates]
-        if name == "fit":
-            measured = np.add(found["normal_force"], found["residual"]).tolist()
-            largest = max(query["normal_force"])
-            assert measured == pytest.approx(query["normal_force"], rel=1e-12, abs=1e-12 * largest)
+        if name in {"fit", "tangential_fit"}:
+            given = query[ordinates[0]]
+            measured = np.add(found[ordinates[0]], found["residual"]).tolist()
+            assert measured == pytest.approx(given, rel=1e-12, abs=1e-12 * max(given))
             expected[0] |= set(zip(found[x], measured, strict=True))
     assert len(axes) == len(expected)
     for each, values in zip(axes, expected, strict=True):

@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple
 
 from mdr_service.queries.contacts import Result, contact_result, solve_normal, solve_tangential
 from mdr_service.queries.fields import solve_stress, stress_result
-from mdr_service.queries.fits import fit_result, solve_fit
+from mdr_service.queries.fits import fit_result, solve_fit, solve_loop
 from mdr_service.queries.impacts import impact_result, solve_impact
 from mdr_service.queries.load_paths import history_result, solve_history
 from mdr_service.queries.subsurface import solve_subsurface, subsurface_result
@@ -18,7 +18,7 @@ from mdr_service.schemas import answers
 from mdr_service.schemas.answers import SolvedAnswer
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import StressQuery
-from mdr_service.schemas.fits import FitQuery
+from mdr_service.schemas.fits import FitQuery, LoopQuery
 from mdr_service.schemas.impacts import ImpactQuery
 from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.subsurface import SubsurfaceQuery
@@ -85,6 +85,16 @@ _TYPES: Final = (
         solve_history,
         history_result,
         by_parameters="Cycles of the tangential load",
+    ),
+    QueryType(
+        "tangential_fit",
+        "/v1/tangential/fit",
+        "Shear modulus, friction and compliance of the rig from a measured loop",
+        LoopQuery,
+        answers.LoopAnswer,
+        solve_loop,
+        fit_result,
+        is_long=True,
     ),
     QueryType(
         "impact",

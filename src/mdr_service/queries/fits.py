@@ -2,13 +2,22 @@
 
 import numpy as np
 
-from mdr_core import fit
+from mdr_core import adhesion, fit, hysteresis, normal
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
+from mdr_core.hysteresis import LoopFit
 from mdr_core.materials import Layer
-from mdr_service.queries.contacts import ADHESION, Result, checked, model_errors, profile
+from mdr_service.queries.contacts import (
+    ADHESION,
+    Result,
+    body,
+    checked,
+    model_errors,
+    profile,
+    require_one_of,
+)
 from mdr_service.schemas.contacts import as_body
-from mdr_service.schemas.fits import FitQuery
+from mdr_service.schemas.fits import FitQuery, LoopQuery
 
 
 def solve_fit(query: FitQuery) -> Fit:
@@ -45,12 +54,42 @@ def solve_fit(query: FitQuery) -> Fit:
     )
 
 
-def fit_result(query: FitQuery, source: Fit) -> Result:
+def solve_loop(query: LoopQuery) -> LoopFit:
+    """Fit G*, µ and the compliance of the rig to a steady loop by least squares.
+
+    A rig in series with the contact makes it look softer: `rig_compliance` is given, 0 included, or
+    fitted. Partial slip alone cannot tell the rig from the contact, and is rejected without
+    `rig_compliance`. The standard errors hold for independent errors of the forces of equal size;
+    the warnings `misfit` and `correlated_noise` tell that the residuals are not such noise, in the
+    order of time, of the displacement and on both branches. `error_estimate` is the numerical error
+    of the parameters.
+    """
+    require_one_of(query, "indentation_depth", "normal_force")
+    if query.material.model_fields_set & ADHESION:
+        raise InputError(("material", "work_of_adhesion"), adhesion.AdhesiveContact.unusable)
+    if query.material.has("g_star"):
+        raise InputError(("material", "g_star"), "is fitted: leave it out")
+    name = "normal_force" if query.has("normal_force") else "indentation_depth"
+    try:
+        contact = normal.solve(**body(query), **{name: getattr(query, name)})
+    except InputError as error:
+        if error.path[:1] == ("load",):
+            raise InputError((name,), error.detail) from None
+        raise
+    return hysteresis.solve(
+        contact,
+        tangential_displacement=query.tangential_displacement,
+        tangential_force=query.tangential_force,
+        rig_compliance=query.rig_compliance,
+    )
+
+
+def fit_result(query: FitQuery | LoopQuery, source: Fit | LoopFit) -> Result:
     """Return the parameters, their standard errors, and the residuals of a curve."""
     found = {name: getattr(source, name) for name in source.quantities[1:]}
     values = {name: np.atleast_1d(value) for name, value in found.items() if value is not None}
     return {
-        "fit": query.fit,
+        "fit": [*source.fit],
         **checked(query, values),
         "method": source.method,
         "sources": [*source.sources],

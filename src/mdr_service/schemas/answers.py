@@ -169,6 +169,31 @@ class FitAnswer(SolvedAnswer):
     residual: list[float] = _force("Measured less fitted forces")
 
 
+class LoopAnswer(SolvedAnswer):
+    """Parameters in lists of one entry, and the loop."""
+
+    fit: list[str] = Field(description="Fitted parameters, in the order of their errors.")
+    g_star: list[float] = _pressure("Effective shear modulus G*")
+    friction_coefficient: list[float] = _number("Coefficient of friction µ")
+    force_offset: list[float] = _force("Force offset, the force in the middle of the loop")
+    rig_compliance: list[float] = quantity(
+        "length/force", "Compliance of the rig, as given or fitted"
+    )
+    standard_errors: list[float] = quantity(
+        "as the parameter", "Standard deviations of the fitted parameters"
+    )
+    correlation: list[list[float]] = _number("Correlation of the fitted parameters")
+    noise: list[float] = _force("Standard deviation of the forces")
+    misfit: list[float] = _number(
+        "Probability that residuals of the right model are as far from noise; below 0.01 with a "
+        "warning that names the likeliest fault"
+    )
+    dissipated_energy: list[float] = _energy("Energy dissipated in a cycle of the fitted loop")
+    tangential_displacement: list[float] = _length("Measured displacements")
+    tangential_force: list[float] = _force("Fitted forces")
+    residual: list[float] = _force("Measured less fitted forces")
+
+
 class HistoryAnswer(SolvedAnswer):
     """One entry per sample in every list, except `slip_fronts` and the lists over the cycles."""
 

@@ -1,6 +1,6 @@
-"""Requests about measured curves of force over depth."""
+"""Requests about measured curves: force over depth, and loops of the tangential force."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -14,11 +14,11 @@ from mdr_service.schemas.contacts import (
     thickness,
 )
 from mdr_service.schemas.fields import OnceEach
-from mdr_service.schemas.quantities import Signed, left_out, positive, quantity
+from mdr_service.schemas.quantities import Signed, Size, left_out, positive, quantity
 from mdr_service.settings import SETTINGS
 
 Fitted = Literal["e_star", "contact_point", "force_offset", "work_of_adhesion"]
-_CURVE = {"min_length": 3, "max_length": SETTINGS.max_length, "fail_fast": True}
+_CURVE: dict[str, Any] = {"min_length": 3, "max_length": SETTINGS.max_length, "fail_fast": True}
 
 
 class FitQuery(Query):
@@ -60,3 +60,28 @@ class FitQuery(Query):
         default="rigid", description="The body that indents the sample, for its `youngs_modulus`."
     )
     layer: ElasticLayer = layer()
+
+
+class LoopQuery(Query):
+    """Measured loop of a contact of known profile under a constant normal load."""
+
+    axes = Axes(
+        *("tangential_displacement", ("tangential_force", "residual")),
+        in_order=True,
+        is_measured=True,
+    )
+
+    indentation_depth: float = positive("length", "Indentation depth d", default=None)
+    normal_force: float = positive(
+        "force", "Normal force F_N; exactly one of depth and force", default=None
+    )
+    tangential_displacement: list[Signed] = quantity(
+        "length", "Measured displacements in the order of time, of a steady loop", **_CURVE
+    )
+    tangential_force: list[Signed] = quantity("force", "Measured tangential forces", **_CURVE)
+    rig_compliance: Size = quantity(
+        "length/force",
+        "Compliance C of the rig in series with the contact, 0 of displacements measured at the "
+        "contact; fitted if it is left out, which needs full slip",
+        default=None,
+    )

@@ -152,6 +152,8 @@ def _over_loads(
 def _fitted(axes: Axes, result: Mapping[str, Any]) -> list[Panel | Map]:
     """Return the panels of a measured curve with the fitted one, and of its residuals."""
     order = np.argsort(result[axes.x])
+    if axes.in_order:
+        order = np.arange(order.size)
     at, fit, residual = (np.asarray(result[name])[order] for name in (axes.x, *axes.y))
     measured = DrawnCurve(at, fit + residual, "measured", is_measured=True)
     fitted, left = DrawnCurve(at, fit, "fitted"), DrawnCurve(at, residual, is_measured=True)
