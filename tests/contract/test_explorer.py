@@ -96,6 +96,27 @@ def test_results_are_those_of_hertz(visit: Visit) -> None:
     )
 
 
+def test_limits_of_the_model_are_shown_in_one_line(visit: Visit) -> None:
+    visit.open("?kind=paraboloid&radius=0.01&load=100&ul=mm&up=MPa")
+    e_star, t = 2.1e11 / 0.91 / 2, 0.01
+    a = (0.75 * 100 * 0.01 / e_star) ** (1 / 3)
+    # The retraction of JKR, (2 pi a w/E*)^(1/2), over the depth of the slope 2 a/R; F ~ a^3; and
+    # 2 tau_max = 0.620 p_0 for a Poisson's ratio of 0.3 (Johnson, section 4.2).
+    work = e_star * (t * a * 2 * a / 0.01) ** 2 / (2 * math.pi * a)
+    strength = float(f"{0.620 * 1.5 * 100 / (math.pi * a**2) / 1e6:.2g}")
+    line = visit.page.locator("#accuracy p").first.inner_text()
+    expected = (
+        rf"Within 1 %: adhesion below {work:.2g} N/m, "
+        rf"tangential force below {1 - 0.98**3:.2g} µF_N, thickness above [\d.]+ mm, "
+        rf"yield strength above {strength:g} MPa[.]"
+    )
+    assert re.fullmatch(expected, line), line
+    # Without a load, and with adhesion, there are none.
+    for case in ("?load=0", "?w=0.1"):
+        visit.open(case)
+        assert "Within" not in visit.page.inner_text("#accuracy")
+
+
 @pytest.mark.parametrize("load", ["-2e-4", "0", "1e-3"])
 def test_adhesive_ball_pulls_off_as_jkr(visit: Visit, load: str) -> None:
     visit.open(f"?kind=paraboloid&radius=0.001&e1=rigid&e2=2e6&nu2=0.5&w=0.05&load={load}&uf=mN")

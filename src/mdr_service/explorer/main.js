@@ -225,7 +225,7 @@ function labels() {
   return Object.fromEntries(profileFields().map(({ key, label }) => [key, label]));
 }
 
-function showAccuracy(responses, notes) {
+function showAccuracy({ responses, limits = "" }, notes) {
   const error = Math.max(...responses.map((response) => response.error_estimate));
   const methods = [...new Set(responses.map((response) => response.method.replace("_", " ")))];
   const fields = Math.max(...responses.map((response) => response.field_error_estimate ?? 0));
@@ -234,9 +234,10 @@ function showAccuracy(responses, notes) {
   // The last load is the one of the form.
   const data = responses.find((response) => response.data_error)?.data_error.at(-1);
   const byPoints = data ? ` The points of the table leave an error of about ${format(100 * data, 2)} % of depth and force.` : "";
-  $("#accuracy").textContent =
+  const accuracy =
     `Computed by ${methods.join(" and ")}; estimated relative error ${quantity(error, "1", inputs, 2)}${ofFields}. ` +
     `The model of half-spaces itself errs by ${model < 100 ? "about" : "over"} ${format(model, 2)} %.${byPoints}`;
+  $("#accuracy").replaceChildren(...[limits, accuracy].filter(Boolean).map((text) => make("p", {}, text)));
   // The estimate of the error is shown above, and the page does not set `rtol`.
   const warnings = [...notes, ...responses.flatMap((response) => response.warnings)]
     .filter(({ code }) => code !== "accuracy");
@@ -352,7 +353,7 @@ const solve = newestWins(async () => {
     document.body.classList.remove("stale");
     if (isShown()) showProblem(null);
     showNumbers(result.numbers);
-    showAccuracy(result.responses, noteOnUnits(current, result.known.contact_radius));
+    showAccuracy(result, noteOnUnits(current, result.known.contact_radius));
     sketch();
     showRequests();
     await draw($("#charts"), result.charts, current, showRequest);

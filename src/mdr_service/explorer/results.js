@@ -9,6 +9,8 @@ import { quantity } from "./units.js";
 
 const POINTS = 400;
 const SAMPLES_PER_STEP = 40;
+// Relative change of a result up to which a model without an effect counts as good.
+const WITHIN = 0.01;
 const ALONG = ["x, along the tangential force", "length"];
 
 /** Return the normal force of the load, by which all other requests give it. */
@@ -162,12 +164,34 @@ async function solveAdhesive(inputs, query) {
   };
 }
 
+// Effect of `holds_while` -> label and dimension of its limit.
+const LIMITED = {
+  adhesion: ["adhesion", "N/m"], slip: ["tangential force", "1"], thickness: ["thickness", "length"],
+  yield: ["yield strength", "pressure"],
+};
+
+/**
+ * Return a sentence with the limits up to which the effects that the model leaves out change the
+ * results of the last load by no more than a relative tolerance, or nothing without a load. The
+ * shape is no such effect: the page computes with the one that is chosen.
+ */
+export function limitWords({ holds_while: limits, normal_force: forces }, within, inputs) {
+  const force = forces.at(-1);
+  const words = limits.filter(({ effect }) => LIMITED[effect]).map(({ effect, below, above }) => {
+    const [[label, dimension], value] = [LIMITED[effect], (below ?? above).at(-1)];
+    const isShare = effect === "slip";
+    const size = quantity(isShare ? value / force : value, dimension, inputs, 2);
+    return `${label} ${below ? "below" : "above"} ${size}${isShare ? " µF_N" : ""}`;
+  });
+  return force > 0 ? `Within ${100 * within} %: ${words.join(", ")}.` : "";
+}
+
 export async function solvePress(inputs, query) {
   if (inputs.w !== 0) return solveAdhesive(inputs, query);
   const force = await normalForce(inputs, query);
   const forces = Array.from({ length: 60 }, (_, i) => force * ((i + 1) / 60) ** 2);
   const [curve, field] = await Promise.all([
-    query("Curve", "v1/normal", { ...basics(inputs), load: { normal_force: forces } }),
+    query("Curve", "v1/normal", { ...basics(inputs), load: { normal_force: forces }, holds_within: WITHIN }),
     fieldsOf(query, "Pressure", { ...basics(inputs), load: { normal_force: force } }, ["pressure"]),
   ]);
   const now = single(curve, -1);
@@ -180,6 +204,7 @@ export async function solvePress(inputs, query) {
       "contact_radius", "maximum_pressure", "indentation_depth", "normal_force", "mean_pressure",
       "normal_stiffness", "elastic_energy",
     ]),
+    limits: limitWords(curve, WITHIN, inputs),
     charts: [
       pressureChart("Pressure", field, [["a", now.contact_radius]], { size: "wide" }),
       relationChart("Curve", "Force against depth", fromZero, ["indentation_depth", "normal_force"], now),
