@@ -154,11 +154,41 @@ def test_work_of_adhesion_is_fitted(visit: Visit) -> None:
     assert not visit.errors
 
 
-def test_thin_gel_is_stiffer_than_a_half_space(visit: Visit) -> None:
-    visit.open("?kind=paraboloid&radius=0.001&e1=rigid&e2=2e6&nu2=0.5&load=1e-4")
+@pytest.mark.parametrize(
+    ("base", "force", "depth"),
+    # By finite elements and by 30 digits of the equation of a layer, for E* = R = a = h = 1.
+    [("bonded", 1.880666899171, 0.5594154855629), ("sliding", 1.578122747287, 0.6739806449888)],
+)
+def test_press_computes_with_a_thickness(
+    visit: Visit, base: str, force: float, depth: float
+) -> None:
+    units = "ul=m&ud=m&uf=N&up=Pa&um=Pa"
+    visit.open(f"?kind=paraboloid&radius=1&e1=rigid&e2=0.75&nu2=0.5&load={force}&{units}")
+    choice = visit.page.locator("#field-base")
+    assert choice.is_hidden()
+    visit.fill("thickness", "1")
+    if base == "sliding":
+        with visit.changing():
+            choice.select_option(base)
+    assert visit.number("Contact radius a") == "1 m"
+    shown = float(visit.number("Indentation depth d").split()[0])
+    assert shown == pytest.approx(depth, rel=1e-4, abs=0)
+    assert "layer" in visit.page.inner_text("#accuracy")
+    # With adhesion, too: its curve holds many loads.
+    visit.fill("w", "0.01")
+    assert visit.state() == "current"
+    # Other analyses check the thickness.
     with visit.changing():
-        visit.fill("thickness", "0.1")
+        visit.page.click("#tab-push")
+    assert choice.count() == 0
     assert "thin body" in visit.page.inner_text("#warnings")
+
+
+def test_contact_that_a_layer_cannot_carry_is_refused_at_its_load(visit: Visit) -> None:
+    visit.open("?kind=paraboloid")
+    visit.page.fill("#field-thickness", "1e-3")
+    visit.page.locator("#problem").get_by_text("a contact radius beyond 0.01 mm").wait_for()
+    assert visit.state() == "refused"
 
 
 def test_latest_slider_position_is_drawn(visit: Visit) -> None:

@@ -10,8 +10,8 @@ const LISTED = 200;
 
 /** Return the rows `[label, value]` of the inputs in the form. */
 function givenRows(inputs) {
-  const shown = document.querySelectorAll("#inputs fieldset:not(#units, [hidden]) label.row");
-  const given = [...shown].map((row) => {
+  const rows = [...document.querySelectorAll("#inputs fieldset:not(#units) label.row")];
+  const given = rows.filter((row) => !row.closest("[hidden]")).map((row) => {
     const [control, words] = [row.querySelector("input, select"), [...row.querySelectorAll("span")]];
     const value = control.selectedOptions?.[0].text ?? (control.value || control.placeholder);
     // In place of a number a word may stand, such as that of a half-space.
