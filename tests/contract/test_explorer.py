@@ -117,6 +117,23 @@ def test_limits_of_the_model_are_shown_in_one_line(visit: Visit) -> None:
         assert "Within" not in visit.page.inner_text("#accuracy")
 
 
+def test_sources_of_the_results_are_shown_under_them(visit: Visit) -> None:
+    visit.open("?tab=press")
+    body = {"profile": {"kind": "paraboloid", "radius": 0.01}, "material": {"e_star": 1e11}}
+    load = {"load": {"normal_force": 100}}
+    path = f"{visit.address}v1/normal"
+    sources = httpx.post(path, json=body | load).json()["sources"]
+    assert sources
+    shown = visit.page.inner_text("#accuracy small")
+    assert shown.startswith("Sources: ")
+    for source in sources:
+        assert shown.count(source) == 1
+    # Those of another analysis replace them.
+    with visit.changing():
+        visit.page.click("#tab-wear")
+    assert "(5.80)-(5.90)" in visit.page.inner_text("#accuracy small")
+
+
 @pytest.mark.parametrize("load", ["-2e-4", "0", "1e-3"])
 def test_adhesive_ball_pulls_off_as_jkr(visit: Visit, load: str) -> None:
     visit.open(f"?kind=paraboloid&radius=0.001&e1=rigid&e2=2e6&nu2=0.5&w=0.05&load={load}&uf=mN")

@@ -245,7 +245,9 @@ function showAccuracy({ responses, limits = "" }, notes) {
   const accuracy =
     `Computed by ${methods.join(" and ")}; estimated relative error ${quantity(error, "1", inputs, 2)}${ofFields}. ` +
     `The model of ${hasLayer(inputs) ? "the layer" : "half-spaces"} itself errs by ${model < 100 ? "about" : "over"} ${format(model, 2)} %.${byPoints}`;
-  $("#accuracy").replaceChildren(...[limits, accuracy].filter(Boolean).map((text) => make("p", {}, text)));
+  const sources = `Sources: ${[...new Set(responses.flatMap((response) => response.sources))].join("; ")}.`;
+  $("#accuracy").replaceChildren(
+    ...[limits, accuracy].filter(Boolean).map((text) => make("p", {}, text)), make("small", {}, sources));
   // The estimate of the error is shown above, and the page does not set `rtol`.
   const warnings = [...notes, ...responses.flatMap((response) => response.warnings)]
     .filter(({ code }) => code !== "accuracy");
