@@ -740,6 +740,28 @@ def test_case_is_printed_as_a_report(visit: Visit, tab: str) -> None:
     visit.page.locator("#inputs").wait_for()
 
 
+def test_report_holds_the_table_of_own_loads(visit: Visit) -> None:
+    visit.open("?kind=paraboloid&radius=0.01&ul=mm&loads=10,20,50")
+    visit.page.evaluate("(window.print = () => dispatchEvent(new Event('beforeprint')), 0)")
+    visit.page.click("#print")
+    printed = visit.page.locator("#loads-printed")
+    printed.locator("tbody tr").nth(2).wait_for()
+    heading = printed.locator("th").all_inner_texts()
+    at = heading.index("Contact radius a [mm]")
+    e_star = 2.1e11 / 0.91 / 2
+    for row, force in zip(printed.locator("tbody tr").all(), (10, 20, 50), strict=True):
+        shown = row.locator("td").all_inner_texts()
+        radius = 1e3 * (0.75 * force * 0.01 / e_star) ** (1 / 3)
+        assert shown[0] == str(force)
+        assert float(shown[at]) == pytest.approx(radius, rel=1e-4, abs=0)
+    assert printed.evaluate("all => all.scrollWidth <= all.clientWidth")
+    visit.page.evaluate("dispatchEvent(new Event('afterprint'))")
+    # The table of another case is not in the report.
+    visit.fill("radius", "7")
+    visit.page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert printed.locator("table").count() == 0
+
+
 def test_url_restores_the_case_with_identical_requests(visit: Visit) -> None:
     visit.open()
     results: list[dict[str, Any]] = visit.page.evaluate(script("round_trip.js"), SCENES)

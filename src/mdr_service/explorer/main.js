@@ -443,7 +443,10 @@ function connect() {
     $("#copied").textContent = (await copied($("#code"))) ? "Copied." : "Selected: press Ctrl+C to copy.";
   });
   $("#csv").addEventListener("click", saveCsv);
-  $("#print").addEventListener("click", () => print());
+  $("#print").addEventListener("click", async () => {
+    // Without a table the case has changed meanwhile.
+    if (!inputs.loads || (await own.computed())) print();
+  });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", solve);
   addEventListener("beforeprint", () => showForPrint(true));
   addEventListener("afterprint", () => showForPrint(false));

@@ -45,6 +45,10 @@ export function showReport(inputs, analysis, version) {
     make("p", {}, `${analysis.title}: ${analysis.lead}`),
     make("p", {}, `${date}, MDR ${version}`),
     make("div", { className: "tables" }, table("Inputs", givenRows(inputs)), table("Results", results)));
+  // The table of own loads is there if it belongs to this case.
+  const own = [...document.querySelectorAll("#own table")].map((found) => found.cloneNode(true));
+  document.querySelector("#loads-printed").replaceChildren(
+    ...own.map((found) => make("section", {}, make("h2", {}, "Table of results"), found)));
   const held = [
     ...(inputs.kind === "tabulated" ? [dataWords("Table", ["r", "f"], inputs.table)] : []),
     ...(inputs.tab === "fit" ? [dataWords("Measured curve", ["d", "F"], inputs.curve)] : []),
