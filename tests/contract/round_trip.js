@@ -29,6 +29,7 @@ async (count) => {
         inputs.mass = 0.03 * (0.7 + 0.6 * Math.random());
         if (inputs.kind === "tabulated") inputs.table.f = inputs.table.f.map((f) => f * (1 + Math.random() / 1e4));
         if (Math.random() < 0.3) inputs.e2 = "rigid";
+        if (Math.random() < 0.3) Object.assign(inputs, { thickness: 1e-3, base: "frictionless" });
         const url = new URL(toAddress(inputs), document.baseURI);
         const [first, second] = [await requestsOf(inputs), await requestsOf(fromAddress(url.search, url.hash).inputs)];
         results.push({ url: url.href, first: first.made, second: second.made, solved: first.solved });

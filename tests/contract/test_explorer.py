@@ -96,6 +96,44 @@ def test_results_are_those_of_hertz(visit: Visit) -> None:
     )
 
 
+def test_limits_of_the_model_are_shown_in_one_line(visit: Visit) -> None:
+    visit.open("?kind=paraboloid&radius=0.01&load=100&ul=mm&up=MPa")
+    e_star, t = 2.1e11 / 0.91 / 2, 0.01
+    a = (0.75 * 100 * 0.01 / e_star) ** (1 / 3)
+    # The retraction of JKR, (2 pi a w/E*)^(1/2), over the depth of the slope 2 a/R; F ~ a^3; and
+    # 2 tau_max = 0.620 p_0 for a Poisson's ratio of 0.3 (Johnson, section 4.2).
+    work = e_star * (t * a * 2 * a / 0.01) ** 2 / (2 * math.pi * a)
+    strength = float(f"{0.620 * 1.5 * 100 / (math.pi * a**2) / 1e6:.2g}")
+    line = visit.page.locator("#accuracy p").first.inner_text()
+    expected = (
+        rf"Within 1 %: adhesion below {work:.2g} N/m, "
+        rf"tangential force below {1 - 0.98**3:.2g} µF_N, thickness above [\d.]+ mm, "
+        rf"yield strength above {strength:g} MPa[.]"
+    )
+    assert re.fullmatch(expected, line), line
+    # Without a load, and with adhesion, there are none.
+    for case in ("?load=0", "?w=0.1"):
+        visit.open(case)
+        assert "Within" not in visit.page.inner_text("#accuracy")
+
+
+def test_sources_of_the_results_are_shown_under_them(visit: Visit) -> None:
+    visit.open("?tab=press")
+    body = {"profile": {"kind": "paraboloid", "radius": 0.01}, "material": {"e_star": 1e11}}
+    load = {"load": {"normal_force": 100}}
+    path = f"{visit.address}v1/normal"
+    sources = httpx.post(path, json=body | load).json()["sources"]
+    assert sources
+    shown = visit.page.inner_text("#accuracy small")
+    assert shown.startswith("Sources: ")
+    for source in sources:
+        assert shown.count(source) == 1
+    # Those of another analysis replace them.
+    with visit.changing():
+        visit.page.click("#tab-wear")
+    assert "(5.80)-(5.90)" in visit.page.inner_text("#accuracy small")
+
+
 @pytest.mark.parametrize("load", ["-2e-4", "0", "1e-3"])
 def test_adhesive_ball_pulls_off_as_jkr(visit: Visit, load: str) -> None:
     visit.open(f"?kind=paraboloid&radius=0.001&e1=rigid&e2=2e6&nu2=0.5&w=0.05&load={load}&uf=mN")
@@ -133,11 +171,41 @@ def test_work_of_adhesion_is_fitted(visit: Visit) -> None:
     assert not visit.errors
 
 
-def test_thin_gel_is_stiffer_than_a_half_space(visit: Visit) -> None:
-    visit.open("?kind=paraboloid&radius=0.001&e1=rigid&e2=2e6&nu2=0.5&load=1e-4")
+@pytest.mark.parametrize(
+    ("base", "force", "depth"),
+    # By finite elements and by 30 digits of the equation of a layer, for E* = R = a = h = 1.
+    [("bonded", 1.880666899171, 0.5594154855629), ("sliding", 1.578122747287, 0.6739806449888)],
+)
+def test_press_computes_with_a_thickness(
+    visit: Visit, base: str, force: float, depth: float
+) -> None:
+    units = "ul=m&ud=m&uf=N&up=Pa&um=Pa"
+    visit.open(f"?kind=paraboloid&radius=1&e1=rigid&e2=0.75&nu2=0.5&load={force}&{units}")
+    choice = visit.page.locator("#field-base")
+    assert choice.is_hidden()
+    visit.fill("thickness", "1")
+    if base == "sliding":
+        with visit.changing():
+            choice.select_option(base)
+    assert visit.number("Contact radius a") == "1 m"
+    shown = float(visit.number("Indentation depth d").split()[0])
+    assert shown == pytest.approx(depth, rel=1e-4, abs=0)
+    assert "layer" in visit.page.inner_text("#accuracy")
+    # With adhesion, too: its curve holds many loads.
+    visit.fill("w", "0.01")
+    assert visit.state() == "current"
+    # Other analyses check the thickness.
     with visit.changing():
-        visit.fill("thickness", "0.1")
+        visit.page.click("#tab-push")
+    assert choice.count() == 0
     assert "thin body" in visit.page.inner_text("#warnings")
+
+
+def test_contact_that_a_layer_cannot_carry_is_refused_at_its_load(visit: Visit) -> None:
+    visit.open("?kind=paraboloid")
+    visit.page.fill("#field-thickness", "1e-3")
+    visit.page.locator("#problem").get_by_text("a contact radius beyond 0.01 mm").wait_for()
+    assert visit.state() == "refused"
 
 
 def test_latest_slider_position_is_drawn(visit: Visit) -> None:
@@ -670,6 +738,28 @@ def test_case_is_printed_as_a_report(visit: Visit, tab: str) -> None:
     assert plot.evaluate("plot => plot.clientWidth <= plot.closest('figure').clientWidth")
     visit.page.evaluate("dispatchEvent(new Event('afterprint'))")
     visit.page.locator("#inputs").wait_for()
+
+
+def test_report_holds_the_table_of_own_loads(visit: Visit) -> None:
+    visit.open("?kind=paraboloid&radius=0.01&ul=mm&loads=10,20,50")
+    visit.page.evaluate("(window.print = () => dispatchEvent(new Event('beforeprint')), 0)")
+    visit.page.click("#print")
+    printed = visit.page.locator("#loads-printed")
+    printed.locator("tbody tr").nth(2).wait_for()
+    heading = printed.locator("th").all_inner_texts()
+    at = heading.index("Contact radius a [mm]")
+    e_star = 2.1e11 / 0.91 / 2
+    for row, force in zip(printed.locator("tbody tr").all(), (10, 20, 50), strict=True):
+        shown = row.locator("td").all_inner_texts()
+        radius = 1e3 * (0.75 * force * 0.01 / e_star) ** (1 / 3)
+        assert shown[0] == str(force)
+        assert float(shown[at]) == pytest.approx(radius, rel=1e-4, abs=0)
+    assert printed.evaluate("all => all.scrollWidth <= all.clientWidth")
+    visit.page.evaluate("dispatchEvent(new Event('afterprint'))")
+    # The table of another case is not in the report.
+    visit.fill("radius", "7")
+    visit.page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert printed.locator("table").count() == 0
 
 
 def test_url_restores_the_case_with_identical_requests(visit: Visit) -> None:

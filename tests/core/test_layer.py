@@ -273,6 +273,18 @@ def test_adhesive_contact_and_its_pull_off() -> None:
     assert thick.pull_off_force == pytest.approx(-1.5 * np.pi * 0.05, rel=1e-8, abs=0)
 
 
+def test_many_adhesive_contacts_at_once_are_those_of_one_at_a_time() -> None:
+    """Radii on both sides of h, and more of them than one block holds."""
+    material = _material(1, BONDED, 0.5)
+    radii = np.geomspace(0.4, 4.0, 61)
+    many = layer.solve(Paraboloid(1.0), material, contact_radius=radii, work_of_adhesion=0.05)
+    for i in range(0, radii.size, 12):
+        one = layer.solve(Paraboloid(1.0), material, contact_radius=radii[i], work_of_adhesion=0.05)
+        for name in ("normal_force", "indentation_depth", "maximum_pressure"):
+            expected = float(getattr(one, name))
+            assert getattr(many, name)[i] == pytest.approx(expected, rel=1e-11, abs=0)
+
+
 @pytest.mark.parametrize("work", [None, 0.02])
 def test_fields_carry_the_force(work: float | None) -> None:
     material = _material(2, BONDED, 0.4, 0.7)

@@ -68,7 +68,8 @@ def waves(layer: Layer, reach: float) -> tuple[Array, Array]:
 
 def states(profile: Profile, layer: Layer, coordinate: Array) -> States:
     """Contacts at contact coordinates (m,)."""
-    part = profile.contact_radius(coordinate) / layer.thickness
+    a = profile.contact_radius(coordinate)
+    part = a / layer.thickness
     # Contacts with about as many polynomials together, in blocks of bounded size.
     size = 2 ** np.ceil(np.log2(np.maximum(part, 1.0)))
     found: list[tuple[Indices, States]] = []
@@ -77,7 +78,7 @@ def states(profile: Profile, layer: Layer, coordinate: Array) -> States:
         count = max(ceil(_DIGITS / np.arcsinh(2 / min(most, LARGEST))) + 4, _LEAST)
         for block in in_blocks(index.size, count * count):
             own = index[block]
-            found.append((own, _block(profile, layer, coordinate[own], count, most)))
+            found.append((own, _block(profile, layer, coordinate[own], a[own], count, most)))
     if len(found) == 1:
         return found[0][1]
     modes = max((len(states.correction) for _, states in found), default=0)
@@ -89,9 +90,11 @@ def states(profile: Profile, layer: Layer, coordinate: Array) -> States:
     return whole
 
 
-def _block(profile: Profile, layer: Layer, coordinate: Array, count: int, largest: float) -> States:
-    """Contacts with so many polynomials, for contact radii up to `largest` times h."""
-    a, modes = profile.contact_radius(coordinate), np.arange(count)
+def _block(
+    profile: Profile, layer: Layer, coordinate: Array, a: Array, count: int, largest: float
+) -> States:
+    """Contacts of radii a with so many polynomials, for radii up to `largest` times h."""
+    modes = np.arange(count)
     part = a / layer.thickness
     angle = angles(count)
     # From values at x = a cos(angle) to coefficients of T_2k(x/a).
@@ -111,7 +114,8 @@ def _block(profile: Profile, layer: Layer, coordinate: Array, count: int, larges
     growth = punch @ rise + q1 * (kernel[:, -1, -1] + _dot(edge, moved))
     condition = stiffness / where(a > 0, 2 * a, 1.0) + 0 * part
     if profile.has_no_partial_slip:
-        depth = profile.depth(coordinate)
+        # The contact coordinate of a flat punch, whose radii may be one for each contact.
+        depth = coordinate
         force, correction = depth * stiffness, depth[:, None] * (punch - 1)
         weights = depth[:, None] * whole
         energy, slope = depth * force / 2, full(0.0, depth)

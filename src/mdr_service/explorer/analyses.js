@@ -16,6 +16,9 @@ export const THICKNESS = {
   key: "thickness", label: "Thickness on a rigid base", dimension: "length", optional: true, placeholder: "half-space",
 };
 
+/** How a body of that thickness is held, of which Press takes account. */
+export const BASE = { key: "base", label: "Layer on its base", choices: [["bonded", "bonded"], ["frictionless", "sliding"]] };
+
 const choicesOf = (names) => names.map((name) => [name, QUANTITIES[name][0]]);
 const FRICTION = { key: "mu", label: QUANTITIES.friction_coefficient[0], dimension: "1", range: [0.01, 1] };
 

@@ -12,7 +12,7 @@ export const RIGID = "rigid";
 const DEFAULTS = {
   tab: "press",
   kind: "paraboloid",
-  e1: 2.1e11, nu1: 0.3, e2: 2.1e11, nu2: 0.3, thickness: "",
+  e1: 2.1e11, nu1: 0.3, e2: 2.1e11, nu2: 0.3, thickness: "", base: "bonded",
   control: "normal_force", load: 100, w: 0,
   mu: 0.3, push: "ratio", shear: "none", amount: 0.7,
   normal: "normal_force", tangential: "tangential_force",
@@ -31,6 +31,7 @@ const CHOICES = {
   tab: TABS, fitted: ["none", ...FITTED], kind: Object.keys(KINDS), push: ["ratio", ...TANGENTIAL],
   shear: ["none", "ratio", ...TANGENTIAL],
   normal: NORMAL, tangential: TANGENTIAL, oscillation: TANGENTIAL, body: [1, 2],
+  base: ["bonded", "frictionless"],
   ...Object.fromEntries(Object.values(BASE_UNITS).map(({ key, factors }) => [key, Object.keys(factors)])),
 };
 const optional = (text) => (text === "" ? text : number(text));
@@ -129,10 +130,16 @@ export function pathPoints(inputs) {
   return inputs.path.split(";").map((point) => point.split(",").map(numberOf));
 }
 
+/** Return whether the analysis computes with a layer of the given thickness, rather than checking it. */
+export function hasLayer(inputs) {
+  return inputs.tab === "press" && inputs.thickness !== "";
+}
+
 /** Return the members that every request shares. */
 export function basics(inputs) {
   const bodies = [1, 2].map((i) =>
     inputs[`e${i}`] === RIGID ? RIGID : { youngs_modulus: inputs[`e${i}`], poissons_ratio: inputs[`nu${i}`] });
-  const layer = inputs.thickness === "" ? {} : { body_thickness: inputs.thickness };
-  return { profile: wireProfile(inputs), material: { bodies, ...layer } };
+  const { thickness, base } = inputs;
+  const body = hasLayer(inputs) ? { layer: { thickness, base } } : { body_thickness: thickness };
+  return { profile: wireProfile(inputs), material: { bodies, ...(thickness === "" ? {} : body) } };
 }

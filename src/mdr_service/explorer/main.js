@@ -6,9 +6,9 @@ import { choiceRow, mark, numberRow, optionalRow } from "./form.js";
 import { showEditor } from "./load_path.js";
 import { MATERIALS, materialOf, strengthOf } from "./materials.js";
 import { inWords } from "./messages.js";
-import { bodyFields, listedField, loadFields, ANALYSES, BODIES, THICKNESS } from "./analyses.js";
+import { bodyFields, listedField, loadFields, ANALYSES, BASE, BODIES, THICKNESS } from "./analyses.js";
 import { copied, download, fileName, inShownUnits, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
-import { defaultInputs, fromAddress, pathPoints, RIGID, TABS, toAddress, withKind } from "./inputs.js";
+import { defaultInputs, fromAddress, hasLayer, pathPoints, RIGID, TABS, toAddress, withKind } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
 import { showReport } from "./report.js";
 import { noteOnUnits } from "./results.js";
@@ -92,6 +92,7 @@ function change(key, value) {
   for (const { key: other, optional, placeholder } of ANALYSES[inputs.tab].fields(inputs)) {
     if (optional) $(`#field-${other}`).placeholder = placeholder;
   }
+  showBase();
   refresh();
 }
 
@@ -182,6 +183,11 @@ function weakest(next) {
   return first < second ? 1 : 2;
 }
 
+/** Show how the layer is held where there is one. */
+function showBase() {
+  $(".field[data-key=base]")?.toggleAttribute("hidden", inputs.thickness === "");
+}
+
 function showForm() {
   const analysis = ANALYSES[inputs.tab];
   $("#kind").value = inputs.kind;
@@ -192,7 +198,9 @@ function showForm() {
   fill($("#profile-fields"), rows(profileFields(), KINDS[inputs.kind].fields));
   // A fit tells the modulus.
   const bodies = inputs.tab === "fit" ? [] : [1, 2];
-  fill($("#bodies"), [...bodies.flatMap((i) => [materialRow(i), ...rows(bodyFields(inputs, i))]), ...rows([THICKNESS])]);
+  const layer = inputs.tab === "press" ? [THICKNESS, BASE] : [THICKNESS];
+  fill($("#bodies"), [...bodies.flatMap((i) => [materialRow(i), ...rows(bodyFields(inputs, i))]), ...rows(layer)]);
+  showBase();
   fill($("#loading"), rows(loadFields(inputs)));
   fill($("#analysis"), rows(analysis.fields(inputs)));
   fill($("#units"), rows(Object.values(BASE_UNITS).map(({ key, label, factors }) => ({
@@ -225,7 +233,7 @@ function labels() {
   return Object.fromEntries(profileFields().map(({ key, label }) => [key, label]));
 }
 
-function showAccuracy(responses, notes) {
+function showAccuracy({ responses, limits = "" }, notes) {
   const error = Math.max(...responses.map((response) => response.error_estimate));
   const methods = [...new Set(responses.map((response) => response.method.replace("_", " ")))];
   const fields = Math.max(...responses.map((response) => response.field_error_estimate ?? 0));
@@ -234,9 +242,12 @@ function showAccuracy(responses, notes) {
   // The last load is the one of the form.
   const data = responses.find((response) => response.data_error)?.data_error.at(-1);
   const byPoints = data ? ` The points of the table leave an error of about ${format(100 * data, 2)} % of depth and force.` : "";
-  $("#accuracy").textContent =
+  const accuracy =
     `Computed by ${methods.join(" and ")}; estimated relative error ${quantity(error, "1", inputs, 2)}${ofFields}. ` +
-    `The model of half-spaces itself errs by ${model < 100 ? "about" : "over"} ${format(model, 2)} %.${byPoints}`;
+    `The model of ${hasLayer(inputs) ? "the layer" : "half-spaces"} itself errs by ${model < 100 ? "about" : "over"} ${format(model, 2)} %.${byPoints}`;
+  const sources = `Sources: ${[...new Set(responses.flatMap((response) => response.sources))].join("; ")}.`;
+  $("#accuracy").replaceChildren(
+    ...[limits, accuracy].filter(Boolean).map((text) => make("p", {}, text)), make("small", {}, sources));
   // The estimate of the error is shown above, and the page does not set `rtol`.
   const warnings = [...notes, ...responses.flatMap((response) => response.warnings)]
     .filter(({ code }) => code !== "accuracy");
@@ -250,6 +261,7 @@ const SOURCES = {
   "/friction_coefficient": "mu", "/load": "load", "/tangential": "amount", "/oscillation": "amplitude",
   "/wear_coefficient": "wear", "/cycles": "cycles", "/body": "body",
   "/material/work_of_adhesion": "w", "/material/body_thickness": "thickness", "/body_thickness": "thickness",
+  "/material/layer": "thickness",
   "/history": "path", "/normal_mass": "mass", "/tangential_mass": "share", "/normal_velocity": "approach",
   "/tangential_velocity": "along", "/indentation_depth": "curve", "/normal_force": "curve",
   "/profile/r/": "table", "/profile/f/": "table",
@@ -352,7 +364,7 @@ const solve = newestWins(async () => {
     document.body.classList.remove("stale");
     if (isShown()) showProblem(null);
     showNumbers(result.numbers);
-    showAccuracy(result.responses, noteOnUnits(current, result.known.contact_radius));
+    showAccuracy(result, noteOnUnits(current, result.known.contact_radius));
     sketch();
     showRequests();
     await draw($("#charts"), result.charts, current, showRequest);
@@ -431,7 +443,10 @@ function connect() {
     $("#copied").textContent = (await copied($("#code"))) ? "Copied." : "Selected: press Ctrl+C to copy.";
   });
   $("#csv").addEventListener("click", saveCsv);
-  $("#print").addEventListener("click", () => print());
+  $("#print").addEventListener("click", async () => {
+    // Without a table the case has changed meanwhile.
+    if (!inputs.loads || (await own.computed())) print();
+  });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", solve);
   addEventListener("beforeprint", () => showForPrint(true));
   addEventListener("afterprint", () => showForPrint(false));

@@ -6,7 +6,7 @@ import { format, quantity } from "./units.js";
 const NUMBER = String.raw`-?\d+(?:\.\d+)?(?:e[-+]?\d+)?`;
 // Words of the service next to numbers that have a unit -> their dimension.
 const WORDS = [
-  [/(?:radius|radii)(?: of the body,| =|,)? /, "length", ""],
+  [/(?:radius|radii)(?: of the body,| beyond| =|,)? /, "length", ""],
   [/of the axis, near /, "length", ""],
   [/deviates by |pull-off depth, |at the depth /, "displacement", ""],
   [/a normal force of |pull-off force, /, "force", ""],

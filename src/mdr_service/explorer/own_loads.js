@@ -128,6 +128,7 @@ export function ownLoads(root, { state, solve, change, fail }) {
   part(".csv").addEventListener("click", save("csv", csvOf));
   part(".xlsx").addEventListener("click", save("xlsx", workbook));
   return {
+    computed,
     /** Show the list of other inputs, without results of the inputs before. */
     show(inputs, field) {
       show(null, "");

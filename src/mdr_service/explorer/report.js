@@ -10,8 +10,8 @@ const LISTED = 200;
 
 /** Return the rows `[label, value]` of the inputs in the form. */
 function givenRows(inputs) {
-  const shown = document.querySelectorAll("#inputs fieldset:not(#units, [hidden]) label.row");
-  const given = [...shown].map((row) => {
+  const rows = [...document.querySelectorAll("#inputs fieldset:not(#units) label.row")];
+  const given = rows.filter((row) => !row.closest("[hidden]")).map((row) => {
     const [control, words] = [row.querySelector("input, select"), [...row.querySelectorAll("span")]];
     const value = control.selectedOptions?.[0].text ?? (control.value || control.placeholder);
     // In place of a number a word may stand, such as that of a half-space.
@@ -45,6 +45,10 @@ export function showReport(inputs, analysis, version) {
     make("p", {}, `${analysis.title}: ${analysis.lead}`),
     make("p", {}, `${date}, MDR ${version}`),
     make("div", { className: "tables" }, table("Inputs", givenRows(inputs)), table("Results", results)));
+  // The table of own loads is there if it belongs to this case.
+  const own = [...document.querySelectorAll("#own table")].map((found) => found.cloneNode(true));
+  document.querySelector("#loads-printed").replaceChildren(
+    ...own.map((found) => make("section", {}, make("h2", {}, "Table of results"), found)));
   const held = [
     ...(inputs.kind === "tabulated" ? [dataWords("Table", ["r", "f"], inputs.table)] : []),
     ...(inputs.tab === "fit" ? [dataWords("Measured curve", ["d", "F"], inputs.curve)] : []),

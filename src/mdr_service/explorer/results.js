@@ -1,6 +1,6 @@
 // The results of the analyses: requests, and the numbers and charts of their responses.
 
-import { basics, pathPoints } from "./inputs.js";
+import { basics, hasLayer, pathPoints } from "./inputs.js";
 import { massOf, strengthOf } from "./materials.js";
 import { QUANTITIES } from "./quantities.js";
 import { Refusal } from "./requests.js";
@@ -9,6 +9,8 @@ import { quantity } from "./units.js";
 
 const POINTS = 400;
 const SAMPLES_PER_STEP = 40;
+// Relative change of a result up to which a model without an effect counts as good.
+const WITHIN = 0.01;
 const ALONG = ["x, along the tangential force", "length"];
 
 /** Return the normal force of the load, by which all other requests give it. */
@@ -128,7 +130,8 @@ async function solveAdhesive(inputs, query) {
   const contact = await query("Contact", "v1/normal", { ...body, load: { [inputs.control]: inputs.load } });
   const now = single(contact);
   const { pull_off_depth: least, pull_off_force: weakest } = now;
-  const span = Math.max(now.indentation_depth, -least) * 1.2 - least;
+  // Past the load of the form, but not past the largest contact with a layer.
+  const span = Math.max(now.indentation_depth, -least) * (hasLayer(inputs) ? 1 : 1.2) - least;
   const depths = Array.from({ length: 61 }, (_, i) => least + span * (i / 60) ** 2);
   // A force has another state than a depth below the pull-off under force.
   const same = inputs.kind === "flat_punch" ? "normal_force" : "contact_radius";
@@ -136,7 +139,8 @@ async function solveAdhesive(inputs, query) {
     query("Curve", "v1/normal", { ...body, load: { indentation_depth: depths } }),
     fieldsOf(query, "Pressure", { ...body, load: { [same]: now[same] } }, ["pressure"]),
   ]);
-  const unstable = await unstableStates(query, { profile, material }, curve);
+  // The retraction of a layer is not in that proportion.
+  const unstable = hasLayer(inputs) ? [] : await unstableStates(query, { profile, material }, curve);
   const at = curve.normal_force.indexOf(Math.min(...curve.normal_force));
   // The last points that a prescribed force and a prescribed depth reach.
   const ends = { ...single(curve, at), normal_force: weakest };
@@ -162,12 +166,36 @@ async function solveAdhesive(inputs, query) {
   };
 }
 
+// Effect of `holds_while` -> label and dimension of its limit.
+const LIMITED = {
+  adhesion: ["adhesion", "N/m"], slip: ["tangential force", "1"], thickness: ["thickness", "length"],
+  yield: ["yield strength", "pressure"],
+};
+
+/**
+ * Return a sentence with the limits up to which the effects that the model leaves out change the
+ * results of the last load by no more than a relative tolerance, or nothing without a load. The
+ * shape is no such effect: the page computes with the one that is chosen.
+ */
+export function limitWords({ holds_while: limits, normal_force: forces }, within, inputs) {
+  const force = forces.at(-1);
+  const words = limits.filter(({ effect }) => LIMITED[effect]).map(({ effect, below, above }) => {
+    const [[label, dimension], value] = [LIMITED[effect], (below ?? above).at(-1)];
+    const isShare = effect === "slip";
+    const size = quantity(isShare ? value / force : value, dimension, inputs, 2);
+    return `${label} ${below ? "below" : "above"} ${size}${isShare ? " µF_N" : ""}`;
+  });
+  return force > 0 ? `Within ${100 * within} %: ${words.join(", ")}.` : "";
+}
+
 export async function solvePress(inputs, query) {
   if (inputs.w !== 0) return solveAdhesive(inputs, query);
   const force = await normalForce(inputs, query);
   const forces = Array.from({ length: 60 }, (_, i) => force * ((i + 1) / 60) ** 2);
+  // The limits are known of half-spaces.
+  const within = hasLayer(inputs) ? {} : { holds_within: WITHIN };
   const [curve, field] = await Promise.all([
-    query("Curve", "v1/normal", { ...basics(inputs), load: { normal_force: forces } }),
+    query("Curve", "v1/normal", { ...basics(inputs), load: { normal_force: forces }, ...within }),
     fieldsOf(query, "Pressure", { ...basics(inputs), load: { normal_force: force } }, ["pressure"]),
   ]);
   const now = single(curve, -1);
@@ -180,6 +208,7 @@ export async function solvePress(inputs, query) {
       "contact_radius", "maximum_pressure", "indentation_depth", "normal_force", "mean_pressure",
       "normal_stiffness", "elastic_energy",
     ]),
+    limits: curve.holds_while ? limitWords(curve, WITHIN, inputs) : "",
     charts: [
       pressureChart("Pressure", field, [["a", now.contact_radius]], { size: "wide" }),
       relationChart("Curve", "Force against depth", fromZero, ["indentation_depth", "normal_force"], now),
