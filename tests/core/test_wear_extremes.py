@@ -78,6 +78,7 @@ def test_edge_of_the_contact_passes_a_break_in_few_steps(
         0.4,
         wear_coefficient=2e-4,
         cycles=[1e2, 1e4],
+        resolution=24,
         tangential_force=0.4 * float(contact.normal_force - within.normal_force),
     )
     assert worn.contact_radius[-1] > 1.003

@@ -411,8 +411,10 @@ _MAKERS: dict[str, Callable[[Mapping[str, Any]], Shape]] = {
     ),
 }
 
-#: Kinds of the banks. A pair of spheres has its own references in `tests/core/test_two_spheres.py`.
-KINDS = tuple(kind for kind in _MAKERS if kind != "two_spheres")
+#: Kinds with a closed form.
+KINDS = tuple(_MAKERS)
+#: Kinds of the banks. Pairs of spheres have references in `tests/core/test_two_spheres.py`.
+BANKED = tuple(kind for kind in KINDS if kind != "two_spheres")
 
 
 def shape_of(profile: Mapping[str, Any]) -> Shape:

@@ -14,7 +14,7 @@ from tests.core.comparison import INPUT, LARGEST_ALLOWANCE
 from tests.oracles import bank
 from tests.oracles.generate import pressure_at, pressure_state
 from tests.oracles.reference import CONTROLS, OUTPUTS, state
-from tests.oracles.shapes import KINDS
+from tests.oracles.shapes import BANKED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,14 +41,14 @@ def test_every_equation_is_among_the_sources() -> None:
 
 def test_every_kind_is_covered_by_every_control() -> None:
     covered = {(r["profile"]["kind"], r["control"]) for r in bank.load("normal")}
-    expected = {(kind, control) for kind in KINDS for control in CONTROLS}
+    expected = {(kind, control) for kind in BANKED for control in CONTROLS}
     # The radius of a flat punch is a parameter and cannot be prescribed.
     assert covered == expected - {("flat_punch", "contact_radius")}
 
 
 def test_every_kind_has_pressures_and_equivalent_profiles() -> None:
     for name in ("pressure", "profile"):
-        assert {r["profile"]["kind"] for r in bank.load(name)} == set(KINDS)
+        assert {r["profile"]["kind"] for r in bank.load(name)} == set(BANKED)
 
 
 ILL_CONDITIONED = {

@@ -11,12 +11,12 @@ from tests.oracles import bank
 from tests.oracles import history_generate as generate
 from tests.oracles import slip_reference as slip
 from tests.oracles.history_reference import history
-from tests.oracles.shapes import KINDS
+from tests.oracles.shapes import BANKED
 from tests.oracles.slip_reference import Material
 from tests.oracles.test_bank import STORED
 
 NAMES = ("history_cycles", "history_inphase", "history_paths")
-EVERY_KIND = set(KINDS)
+EVERY_KIND = set(BANKED)
 
 
 def everything() -> list[bank.Record]:

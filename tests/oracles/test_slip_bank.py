@@ -9,7 +9,7 @@ from mpmath import mp, mpf
 
 from tests.oracles import bank
 from tests.oracles import slip_reference as reference
-from tests.oracles.shapes import KINDS
+from tests.oracles.shapes import BANKED
 from tests.oracles.slip_reference import CONTROLS, Material
 from tests.oracles.test_bank import STORED
 
@@ -20,7 +20,7 @@ def everything() -> list[bank.Record]:
 
 def test_every_kind_is_covered_by_every_control() -> None:
     covered = {(r["profile"]["kind"], r["tangential_control"]) for r in everything()}
-    expected = {(kind, control) for kind in KINDS for control in CONTROLS}
+    expected = {(kind, control) for kind in BANKED for control in CONTROLS}
     # A flat punch has a single stick radius, independent of the force.
     assert covered == expected - {("flat_punch", "stick_radius")}
 
@@ -36,7 +36,7 @@ def test_every_regime_and_direction_is_covered() -> None:
 
 def test_every_kind_has_its_fields() -> None:
     kinds = {record["profile"]["kind"] for record in bank.load("slip_fields")}
-    assert kinds == set(KINDS)
+    assert kinds == set(BANKED)
 
 
 def sample(name: str, count: int) -> list[bank.Record]:

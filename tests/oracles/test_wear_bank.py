@@ -9,7 +9,7 @@ from mpmath import mp, mpf
 
 from tests.oracles import bank
 from tests.oracles import wear_reference as reference
-from tests.oracles.shapes import KINDS
+from tests.oracles.shapes import BANKED
 from tests.oracles.slip_reference import Material
 from tests.oracles.test_bank import STORED
 from tests.oracles.wear_generate import PAIRS
@@ -26,7 +26,7 @@ def test_every_equation_of_a_limit_is_covered() -> None:
 def test_every_kind_is_covered_by_every_pair() -> None:
     records = bank.load("wear_limit")
     covered = {(r["profile"]["kind"], r["control"], r["amplitude"]) for r in records}
-    kinds = set(KINDS) - {"flat_punch"}
+    kinds = set(BANKED) - {"flat_punch"}
     assert covered == {(kind, *pair) for kind in kinds for pair in PAIRS}
 
 

@@ -23,7 +23,9 @@ PROOF = mpf(10) ** -33
 #: The direct integrals have endpoint singularities, where tanh-sinh keeps half of its digits.
 DIRECT = mpf(10) ** -30
 MATERIAL = Material(2.1, 1.7, 0.3)
-SOME = [name for name in CHOSEN if PROFILES[name]["kind"] != "flat_punch"]
+# A flat punch has no worn annulus. The reference of two spheres has no expansion at the axis.
+LEFT_OUT = {"flat_punch", "two_spheres"}
+SOME = [name for name in CHOSEN if PROFILES[name]["kind"] not in LEFT_OUT]
 DEPTH, DISPLACEMENT = "indentation_depth", "tangential_displacement"
 
 
@@ -51,7 +53,7 @@ def chosen(name: str) -> Limit:
 
 
 def test_every_kind_has_proofs() -> None:
-    assert {PROFILES[name]["kind"] for name in SOME} == set(KINDS) - {"flat_punch"}
+    assert {PROFILES[name]["kind"] for name in SOME} == set(KINDS) - LEFT_OUT
 
 
 @pytest.mark.parametrize("name", SOME)

@@ -6,7 +6,7 @@ from typing import Annotated, Final, Literal, Self, get_args
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from mdr_service.schemas.quantities import Signed, Size, Strict, one_of, positive, quantity
+from mdr_service.schemas.quantities import Signed, Size, Strict, positive, quantity
 from mdr_service.settings import SETTINGS
 
 _COEFFICIENT = "length^(1-exponent)"
@@ -21,7 +21,7 @@ class FlatPunchProfile(Strict):
     radius: float = positive("length", "Radius of the flat face")
 
 
-class _Flanked(Strict, json_schema_extra=one_of("slope", "half_angle")):
+class _Flanked(Strict):
     """Profile with a flank, given by its slope or its angle."""
 
     slope: float = positive(

@@ -84,7 +84,9 @@ def draw(
         for each, panel in zip(axes, panels, strict=True):
             if isinstance(panel, Map):
                 colors = _draw_map(each, panel)
-                figure.colorbar(colors, ax=each, aspect=12, label=text(panel.name))
+                # Along the whole height of a map there is room for longer lines.
+                words = label(panel.name, units, width=20 if is_small else 28)
+                figure.colorbar(colors, ax=each, aspect=12, label=words)
             else:
                 _draw_curves(each, panel)
             each.set_ylabel(text(panel.y))
