@@ -615,9 +615,11 @@ def test_tabs_are_steps_of_the_history(visit: Visit) -> None:
 
 @pytest.mark.parametrize("tab", TABS)
 def test_no_text_of_a_chart_is_cut(visit: Visit, tab: str) -> None:
+    # The example of a table is shorter than the example of a curve needs, which is refused.
+    tables = () if tab == "fit" else ("tabulated",)
     for width in (390, 1280):
         visit.page.set_viewport_size({"width": width, "height": 900})
-        for kind in ("paraboloid", "flat_punch", "cone", "tabulated"):
+        for kind in ("paraboloid", "flat_punch", "cone", *tables):
             visit.open(f"?tab={tab}&kind={kind}&mass=0.03")
             assert titles_outside(visit.page) == [], (width, kind)
 

@@ -138,6 +138,9 @@ def test_loop_equals_the_core(client: Client) -> None:
     other = {name: value for name, value in loop.items() if name != "normal_force"} | depth
     by_depth = client.post("/v1/tangential/fit", other).json()
     assert by_depth["g_star"] == pytest.approx(document["g_star"], rel=1e-9, abs=0)
+    soft = loop | {"material": {"e_star": 48e3, "poissons_ratio": 0.3, "yield_strength": 1.0}}
+    codes = [each["code"] for each in client.post("/v1/tangential/fit", soft).json()["warnings"]]
+    assert "yield" in codes
     rows = list(
         csv.DictReader(io.StringIO(client.post("/v1/tangential/fit?format=csv", loop).text))
     )

@@ -50,7 +50,7 @@ export function densityOf(inputs) {
 /** Return the mass of body 1: as given, else that of a solid ball of its radius, else undefined. */
 export function massOf(inputs) {
   if (inputs.mass !== "") return inputs.mass;
-  const radius = { balls: inputs.radius_1, paraboloid: inputs.radius, sphere: inputs.radius }[inputs.kind];
+  const radius = { two_spheres: inputs.radius_1, paraboloid: inputs.radius, sphere: inputs.radius }[inputs.kind];
   const mass = (4 / 3) * Math.PI * radius ** 3 * densityOf(inputs);
   return mass > 0 ? mass : undefined;
 }

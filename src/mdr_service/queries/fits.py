@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mdr_core import adhesion, fit, hysteresis, normal
+from mdr_core import adhesion, fit, hysteresis, normal, validity
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
 from mdr_core.hysteresis import LoopFit
@@ -15,6 +15,7 @@ from mdr_service.queries.contacts import (
     model_errors,
     profile,
     require_one_of,
+    yields,
 )
 from mdr_service.schemas.contacts import as_body
 from mdr_service.schemas.fits import FitQuery, LoopQuery
@@ -88,6 +89,9 @@ def fit_result(query: FitQuery | LoopQuery, source: Fit | LoopFit) -> Result:
     """Return the parameters, their standard errors, and the residuals of a curve."""
     found = {name: getattr(source, name) for name in source.quantities[1:]}
     values = {name: np.atleast_1d(value) for name, value in found.items() if value is not None}
+    warnings = [notice for notice in source.warnings if notice.code != "singular"]
+    if isinstance(source, LoopFit):
+        warnings += validity.notices(yields(query, source))
     return {
         "fit": [*source.fit],
         **checked(query, values),
@@ -95,5 +99,5 @@ def fit_result(query: FitQuery | LoopQuery, source: Fit | LoopFit) -> Result:
         "sources": [*source.sources],
         "error_estimate": source.error_estimate,
         **model_errors(source),
-        "warnings": [vars(notice) for notice in source.warnings if notice.code != "singular"],
+        "warnings": [vars(notice) for notice in warnings],
     }
