@@ -33,10 +33,12 @@ LONGER = {
     "profile": {"kind": "paraboloid", "radius": 1.0},
     "material": {"e_star": 1.0, "g_star": 0.8},
     "friction_coefficient": 0.3,
-    "history": {
-        "normal": {"indentation_depth": [0.01, 0.02] * 150},
-        "tangential": {"tangential_force": [0.0, 1e-4] * 150},
-    },
+    "load": {"normal_force": 1e-3},
+    "oscillation": {"tangential_force": 1e-4},
+    "wear_coefficient": 1e-3,
+    "cycles": [1e6],
+    "resolution": 96,
+    "rtol": 1e-9,
 }
 PATIENT = {
     "MDR_QUEUE_SECONDS": "100",
@@ -89,7 +91,7 @@ def wait_for(condition: Callable[[], bool]) -> None:
 
 def requests(port: int, clients: int) -> tuple[ThreadPoolExecutor, list[Future[tuple[int, bytes]]]]:
     pool = ThreadPoolExecutor(clients)
-    return pool, [pool.submit(ask, port, "/v1/tangential/history", LONGER) for _ in range(clients)]
+    return pool, [pool.submit(ask, port, "/v1/wear/evolution", LONGER) for _ in range(clients)]
 
 
 def test_requests_in_flight_are_completed_after_sigterm_within_the_stated_time() -> None:
@@ -103,7 +105,7 @@ def test_requests_in_flight_are_completed_after_sigterm_within_the_stated_time()
         running(service(port), port, **environment) as process,
         socket.create_connection(("127.0.0.1", port)) as half_sent,
     ):
-        expected = ask(port, "/v1/tangential/history", LONGER)
+        expected = ask(port, "/v1/wear/evolution", LONGER)
         children = computing(process.pid)
         half_sent.sendall(
             b"POST /v1/normal HTTP/1.1\r\nHost: service\r\n"
@@ -128,7 +130,7 @@ def test_requests_in_flight_are_completed_after_sigterm_within_the_stated_time()
 def test_killed_compute_process_loses_its_own_request_only() -> None:
     port = free_port()
     with running(service(port), port, **PATIENT) as process:
-        expected = ask(port, "/v1/tangential/history", LONGER)
+        expected = ask(port, "/v1/wear/evolution", LONGER)
         assert expected[0] == 200
         pool, answers = requests(port, 4)
         with pool:
@@ -137,7 +139,7 @@ def test_killed_compute_process_loses_its_own_request_only() -> None:
         assert sorted(status for status, _ in computed) == [200, 200, 200, 503]
         assert b"urn:mdr:problem:process-lost" in min(computed, key=lambda each: len(each[1]))[1]
         assert [each for each in computed if each[0] == 200] == [expected] * 3
-        assert ask(port, "/v1/tangential/history", LONGER) == expected
+        assert ask(port, "/v1/wear/evolution", LONGER) == expected
         assert ask(port, "/v1/normal", SMALL)[0] == 200
         wait_for(lambda: len(computing(process.pid)) == 2)
 
@@ -212,12 +214,12 @@ def test_stopped_compute_processes_are_replaced(state: str) -> None:
     port = free_port()
     # A process is missed after the time limit of the self-test.
     with running(service(port), port) as process:
-        expected = ask(port, "/v1/tangential/history", LONGER)
+        expected = ask(port, "/v1/wear/evolution", LONGER)
         stopped = computing(process.pid)
         pool = ThreadPoolExecutor(4)
         answers = []
         if state == "busy":
-            answers.append(pool.submit(ask, port, "/v1/tangential/history", LONGER))
+            answers.append(pool.submit(ask, port, "/v1/wear/evolution", LONGER))
             busy(process.pid)
         for each in stopped:
             each.suspend()
@@ -227,7 +229,7 @@ def test_stopped_compute_processes_are_replaced(state: str) -> None:
         while (status := ready(port)) != 200:
             assert status in {503, 504}
             assert time.monotonic() - began < 15.0
-        answers.append(pool.submit(ask, port, "/v1/tangential/history", LONGER))
+        answers.append(pool.submit(ask, port, "/v1/wear/evolution", LONGER))
         computed = [each.result() for each in answers]
         pool.shutdown()
         # A computation in a stopped process takes longer than its time limit.
@@ -276,7 +278,7 @@ def test_server_without_file_descriptors_recovers() -> None:
             return False
 
         wait_for(recovered)
-        assert ask(port, "/v1/tangential/history", LONGER)[0] == 200
+        assert ask(port, "/v1/wear/evolution", LONGER)[0] == 200
         wait_for(lambda: len(computing(process.pid)) == 2)
         held.close()
 
