@@ -65,6 +65,9 @@ IN_PROCESS = {
     "tangential/history": (25, 130, 25, 100),
     "cycle": (40, 155, 20, 100),
 }
+# The socket of the benchmark is deep: its largest pressure is searched, in six times the time of
+# the whole query of a ball.
+SEARCHED = 8
 # Calls of each query in process, of which the fastest counts.
 CALLS = 4
 
@@ -147,7 +150,9 @@ def rows(chosen: list[str] | None = None) -> list[measure.Row]:
 
 def bound(bounds: dict[str, tuple[float, ...]], query: str, kind: str) -> float:
     """The bound for the kind's class."""
-    return bounds[query][{AGAIN: 2, FIRST: 3}.get(kind, 0 if kind in CLOSED else 1)]
+    size = bounds[query][{AGAIN: 2, FIRST: 3}.get(kind, 0 if kind in CLOSED else 1)]
+    more = SEARCHED if kind == "two_spheres" else 1
+    return size * more if bounds is IN_PROCESS else size / more
 
 
 def in_process() -> list[measure.Row]:
