@@ -58,8 +58,8 @@ class Errors(NamedTuple):
     """Estimated relative errors of each load by the half-space approximation [1]."""
 
     parts: tuple[Array, ...]
-    """Parts of the error of the force at a given depth, which is larger than that of the depth
-    under a given force: by the finite size of round bodies, by the neglected radial displacement,
+    """Parts of the error of the force at a given depth, which exceeds the error of the depth under
+    a given force: by the finite size of round bodies, by the neglected radial displacement,
     by the slope, and by the side wall of an elastic punch."""
     steepness: Array
     """Slope at the contact edge, or largest a/R of round bodies."""

@@ -108,7 +108,7 @@ def misfit(
 
 
 def worst(found: Mapping[str, float]) -> tuple[str, float]:
-    """Return the warning of the least probability, and that of all tests together."""
+    """Return the warning of the least probability, and the joint probability of all tests."""
     code = min(found, key=lambda each: found[each], default="misfit")
     if code == "correlated_noise" and found["misfit"] * len(found) < FALSE_ALARM:
         code = "misfit"

@@ -14,7 +14,7 @@ function givenRows(inputs) {
   const given = rows.filter((row) => !row.closest("[hidden]")).map((row) => {
     const [control, words] = [row.querySelector("input, select"), [...row.querySelectorAll("span")]];
     const value = control.selectedOptions?.[0].text ?? (control.value || control.placeholder);
-    // In place of a number a word may stand, such as that of a half-space.
+    // A word may stand in place of a number: a half-space has no thickness.
     const unitName = /\d/.test(value) ? words[1]?.textContent ?? "" : "";
     return [words[0].textContent, `${value} ${unitName}`.trim()];
   });
