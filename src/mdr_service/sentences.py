@@ -10,14 +10,12 @@ from typing import Any, Final, get_args
 from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
-from mdr_core.torsion.contact import NEEDED
 from mdr_core.validation import BODIES, FINITE, POSITIVE, not_negative
 from mdr_service.batch import BatchQuery
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.contacts import Choice
 from mdr_service.schemas.profiles import MODELS, OF_NUMBERS
 from mdr_service.schemas.quantities import BRANCHES
-from mdr_service.schemas.torsion import TorsionQuery
 
 Path = tuple[str | int, ...]
 _Model = type[BaseModel]
@@ -54,7 +52,6 @@ _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     ("too_long", "bodies"): BODIES,
     ("too_short", "bodies"): BODIES,
 }
-_NOT_WITH_A_TWIST: Final = {"tangential", "history", "cycles", "oscillation"}
 _BOUNDS: Final = {"ge": "at least", "gt": "greater than", "le": "at most", "lt": "less than"}
 _MODELS: Final[Sequence[_Model]] = (BatchQuery, *(kind.request for kind in QUERIES.values()))
 _REQUESTS: Final = {model.__name__: model for model in _MODELS}
@@ -120,8 +117,9 @@ def _unknown(error: ErrorDetails, place: Path, model: _Model | None) -> str:
         fields = [field for each in others for field in each.model_fields.items()]
         rivals = [name for name, field in fields if field.is_required()]
         return f"cannot be combined with {', '.join(rivals)}"
-    if model is TorsionQuery and place[-1] in _NOT_WITH_A_TWIST:
-        return f"a twist needs {NEEDED}"
+    refused: Mapping[object, str] = getattr(model, "refused", {})
+    if place[-1] in refused:
+        return refused[place[-1]]
     names = _members(models)
     # The ends of a range, `_from` and `_to`, are described by the parameter itself.
     listed = ", ".join(name for name in names if not name.endswith(("_from", "_to")))

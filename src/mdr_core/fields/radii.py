@@ -115,10 +115,11 @@ def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) ->
         return rim_error(known, radius[:, None] - known.radius)
     if name == "slip":
         # It grows as (r - c)^(3/2) from a front, and radii next to c alone have little of it.
-        count = known.radius.size
+        count, reach = known.radius.size, known.reach.copy()
         fronts = slice(-1) if isinstance(contact, ContactState) else slice(count // 2, count)
         beyond = 2 / 3 * (radius.max(initial=0.0) - known.radius[fronts])
-        known.reach[fronts] = where(beyond > 0, np.minimum(known.reach[fronts], beyond), inf)
+        reach[fronts] = where(beyond > 0, np.minimum(reach[fronts], beyond), inf)
+        known = known._replace(reach=reach)
     return error_near(known, radius, root=stress)
 
 

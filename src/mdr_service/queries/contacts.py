@@ -4,7 +4,8 @@ Profile, material and load become arguments of the core. Results of the core, ch
 become the members of a response, together with their warnings.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import lru_cache
 from typing import Any, Final
 
@@ -117,6 +118,18 @@ def control(given: Choice) -> Arguments:
     """Return the given control by its name, as an argument of the core."""
     value = given.value
     return {given.control: np.array(value, dtype=float) if isinstance(value, list) else value}
+
+
+@contextmanager
+def pointing(names: Mapping[str, tuple[str, ...]]) -> Iterator[None]:
+    """Point errors within the context into the request, which has other `names` for arguments."""
+    try:
+        yield
+    except InputError as error:
+        first, *rest = error.path or ("",)
+        if first not in names:
+            raise
+        raise InputError((*names[str(first)], *rest), error.detail) from None
 
 
 def paired(name: str, given: Choice, load: Choice) -> Arguments:

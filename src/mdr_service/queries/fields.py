@@ -74,9 +74,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     for name in query.quantities:
         rows = broadcast(field(name, end, radius), shape)
         values[name] = np.ascontiguousarray(rows)
-    edges = np.ravel(contact.contact_radius)
-    radii = map(float, contact.profile.infinite_pressure_radii)
-    at_singular = np.isin(radius, [0.0, *radii, *edges])
+    at_singular = may_be_infinite(contact, radius)
     infinite: dict[str, Flags] = dict.fromkeys(("pressure", "shear_stress"), at_singular)
     method = _method(contact, query.quantities)
     # The errors of the edges and of the integrals add up.
@@ -99,6 +97,12 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
         error=max(fields.own_error(source), integrated) + at_edges,
         warnings=warnings,
     )
+
+
+def may_be_infinite(contact: NormalContact, radius: Array) -> Flags:
+    """Return True for the radii (m,) at which a stress of a contact may be infinite."""
+    radii = map(float, contact.profile.infinite_pressure_radii)
+    return np.isin(radius, [0.0, *radii, *np.ravel(contact.contact_radius)])
 
 
 def field(name: str, end: End, radius: Array) -> Array:

@@ -13,6 +13,7 @@ from mdr_service.queries.contacts import (
     body,
     checked,
     model_errors,
+    pointing,
     profile,
     require_one_of,
     yields,
@@ -71,12 +72,9 @@ def solve_loop(query: LoopQuery) -> LoopFit:
     if query.material.has("g_star"):
         raise InputError(("material", "g_star"), "is fitted: leave it out")
     name = "normal_force" if query.has("normal_force") else "indentation_depth"
-    try:
+    # The load is a member of the request itself.
+    with pointing({"load": ()}):
         contact = normal.solve(**body(query), **{name: getattr(query, name)})
-    except InputError as error:
-        if error.path[:1] == ("load",):
-            raise InputError((name,), error.detail) from None
-        raise
     return hysteresis.solve(
         contact,
         tangential_displacement=query.tangential_displacement,

@@ -15,7 +15,7 @@ from mdr_service.queries.contacts import (
     singular,
     solve_normal,
 )
-from mdr_service.queries.fields import require_radii
+from mdr_service.queries.fields import may_be_infinite, require_radii
 from mdr_service.schemas.torsion import TorsionQuery
 
 
@@ -48,10 +48,7 @@ def torsion_result(query: TorsionQuery, source: TorsionalContact) -> Result:
     surface: Result = {
         name: np.broadcast_to(field[name](), shape).copy() for name in query.quantities
     }
-    radii = map(float, contact.profile.infinite_pressure_radii)
-    singular_radii = [0.0, *radii, *np.ravel(contact.contact_radius)]
-    at_singular = np.isin(radius, singular_radii)
-    possible: Result = dict.fromkeys(query.quantities, at_singular)
+    possible: Result = dict.fromkeys(query.quantities, may_be_infinite(contact, radius))
     at_edges = max(fields.edge_error(source, name, radius) for name in query.quantities)
     return response(
         query,

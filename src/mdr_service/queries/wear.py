@@ -5,7 +5,7 @@ from typing import Any, Final
 import numpy as np
 
 from mdr_core import normal as normal_contact
-from mdr_core.errors import InputError, Notice
+from mdr_core.errors import Notice
 from mdr_core.typing import Array, Flags
 from mdr_core.wear import evolution as wear_evolution
 from mdr_core.wear import limit as wear_limit
@@ -18,6 +18,7 @@ from mdr_service.queries.contacts import (
     control,
     friction,
     paired,
+    pointing,
     response,
     singular,
     solve_normal,
@@ -28,6 +29,8 @@ from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 Wear = LimitingWear | WearEvolution
 # A tuple, because the order of a set, and thus of the warnings, differs between processes.
 _PROFILES: Final = ("initial_profile", "limiting_profile", "profile")
+# The request calls the amplitude `oscillation`.
+_IN_REQUEST: Final = {"tangential": ("oscillation",)}
 # Quantities that are infinite under unbounded wear.
 _UNBOUNDED: Final = frozenset(
     {"wear_radius", "indentation_depth", "worn_volume", "limiting_profile", "worn_depth"}
@@ -48,10 +51,8 @@ def solve_wear(query: WearQuery) -> LimitingWear:
     """
     require_radii(query)
     amplitude = paired("oscillation", query.oscillation, query.load)
-    try:
+    with pointing(_IN_REQUEST):
         return wear_limit.solve(solve_normal(query), **friction(query), **amplitude)
-    except InputError as error:
-        raise _in_request(error) from None
 
 
 def wear_result(query: WearQuery, limit: LimitingWear) -> Result:
@@ -71,7 +72,7 @@ def solve_evolution(query: EvolutionQuery) -> WearEvolution:
     contact is lost (`contact_lost`).
     """
     require_radii(query)
-    try:
+    with pointing(_IN_REQUEST):
         return wear_evolution.solve(
             normal_contact.solve(**body(query), **control(query.load)),
             **friction(query),
@@ -81,8 +82,6 @@ def solve_evolution(query: EvolutionQuery) -> WearEvolution:
             resolution=query.resolution,
             rtol=query.rtol,
         )
-    except InputError as error:
-        raise _in_request(error) from None
 
 
 def evolution_result(query: EvolutionQuery, worn: WearEvolution) -> Result:
@@ -122,9 +121,3 @@ def _surface(worn: Wear, name: str, radius: Array, query: WearQuery | EvolutionQ
     """Return one field of a worn contact, by load if it depends on the load."""
     shape = (radius.size,) if name == "initial_profile" else (query.loads, radius.size)
     return np.ascontiguousarray(getattr(worn, name)(radius).reshape(shape))
-
-
-def _in_request(error: InputError) -> InputError:
-    """Return the error with the path of the request, which calls the amplitude `oscillation`."""
-    first, *rest = error.path
-    return InputError(("oscillation", *rest), error.detail) if first == "tangential" else error

@@ -296,6 +296,8 @@ class Query(Strict):
 
     axes: ClassVar[Axes] = Axes("indentation_depth", ("normal_force",))
     """Axes of a picture, unless the result has radii."""
+    refused: ClassVar[dict[str, str]] = {}
+    """Members of other queries that this one cannot have, with the reason."""
 
     profile: Profile
     material: Material

@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from mdr_core.torsion.contact import NEEDED
 from mdr_service.schemas.contacts import Axes, Load, Torsion, friction
 from mdr_service.schemas.fields import FieldQuery, OnceEach, quantities
 
@@ -14,6 +15,9 @@ class TorsionQuery(FieldQuery):
     """Contact with friction, loaded normally first and then twisted about its axis."""
 
     axes = Axes("rotation", ("torque",), curves="normal_force")
+    refused = dict.fromkeys(
+        ("tangential", "history", "cycles", "oscillation"), f"a twist needs {NEEDED}"
+    )
 
     load: Load = Field(description="Exactly one control: depth, force or contact radius.")
     friction_coefficient: float = friction()
