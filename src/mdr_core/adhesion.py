@@ -59,7 +59,7 @@ class Curve:
     def __init__(self, profile: Profile, c: float) -> None:
         self.profile, self.c = profile, c
         # The edge of a flat punch stays until the energy release rate reaches w.
-        fixed = (np.zeros(1), np.full(1, inf)) if profile.has_no_partial_slip else None
+        fixed = (np.zeros(1), np.full(1, inf)) if profile.is_flat_punch else None
         self.stable = {name: fixed or self._branches(name) for name in _SHARES}
         """Coordinates between which states are stable, under a prescribed depth or force."""
         lows = {name: self.load(name, low) for name, (low, _) in self.stable.items()}
@@ -117,7 +117,7 @@ class Curve:
     def excess(self, share: float, coordinate: Array) -> Array:
         """phi/c less a share: the excess of a g'/Delta_l over its value at pull-off [1]."""
         with np.errstate(all="ignore"):
-            punch = self.profile.has_no_partial_slip
+            punch = self.profile.is_flat_punch
             slope = inf if punch else self.profile.depth_slope(coordinate)
             return slope * np.sqrt(self.profile.contact_radius(coordinate)) / self.c - share
 
@@ -245,7 +245,7 @@ class AdhesiveContact(NormalContact):
         -inf at pull-off under a prescribed depth; 2 E* a on a flat punch, whose edge is fixed.
         """
         punch = self.reference.normal_stiffness
-        if self.profile.has_no_partial_slip:
+        if self.profile.is_flat_punch:
             return punch
         excess = self.curve.excess(_SHARES["normal_force"], self.coordinate)
         with np.errstate(divide="ignore"):
@@ -253,7 +253,7 @@ class AdhesiveContact(NormalContact):
 
     def _excess(self, name: str) -> Array:
         """Excess of a g'/Delta_l over its value at pull-off; infinite under a flat punch [1]."""
-        if self.profile.has_no_partial_slip:
+        if self.profile.is_flat_punch:
             return full(inf, self.coordinate)
         excess = self.curve.excess(_SHARES[name], self.coordinate)
         return where(excess > self.profile.steepness * ROUNDING, excess, 0.0)
@@ -283,7 +283,7 @@ class AdhesiveContact(NormalContact):
     @property
     def method(self) -> str:
         """Method: closed forms only under a flat punch."""
-        return self.reference.method if self.profile.has_no_partial_slip else "quadrature"
+        return self.reference.method if self.profile.is_flat_punch else "quadrature"
 
     @cached_property
     def edge_errors(self) -> Array:
@@ -448,7 +448,7 @@ def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, 
         side = f"{'below' if least else 'not above'} the {pull_off}, {least * unit:.9g}"
         detail = f"is {side}: there is no contact"
         raise InputError(("load", name, *validation.first_index(below)), detail, below)
-    if profile.has_no_partial_slip:
+    if profile.is_flat_punch:
         depth = amount / curve.stiffness(amount) if of_force else amount
         return np.maximum(depth, 0.0), np.maximum(-depth, 0.0), states
     validation.require_inside(

@@ -163,7 +163,7 @@ def _infinite(
     infinite = loaded & False
     for b in profile.infinite_pressure_radii:
         begins = c <= b
-        if slip and not profile.has_no_partial_slip:
+        if slip and not profile.is_flat_punch:
             # A radius just beyond a flat may round to the radius of the flat.
             begins = where(b == profile.first_radius, slip[1] <= 0, begins)
         infinite = infinite | (loaded & begins & (b <= a))

@@ -215,7 +215,7 @@ def solve(
     for name, value in (("e_star", e_star), ("noise", noise)):
         if value is not None:
             require_single_positive((name,), value)
-    if "work_of_adhesion" in fit and profile.has_no_partial_slip:
+    if "work_of_adhesion" in fit and profile.is_flat_punch:
         detail = "holds work_of_adhesion, on which only the pull-off of a flat punch depends"
         raise InputError(("fit",), detail)
     deepest = profile.largest_loads

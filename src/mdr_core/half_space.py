@@ -180,7 +180,7 @@ def largest_ratio(material: Material | None) -> float:
 def _edge_slope(contact: LoadedContact) -> Array:
     """f'(a) of loaded contacts, else zero [1]."""
     a, loaded = contact.contact_radius, contact.loaded
-    if contact.profile.has_no_partial_slip or not some(loaded):
+    if contact.profile.is_flat_punch or not some(loaded):
         return full(0.0, a)
     # The slope at the tip, where nothing is loaded, may be infinite.
     inside = a if every(loaded) else np.where(loaded, a, np.max(a))

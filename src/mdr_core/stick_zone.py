@@ -90,13 +90,13 @@ def _by_radius(contact: NormalContact, radius: Array) -> StickZone:
     all_slips = (radius == 0) & (a > 0)
     bad = (radius > a) | (radius < 0) | ((radius > 0) & (radius < innermost))
     detail = "must lie between the flat's radius, or 0, and the contact radius"
-    if profile.has_no_partial_slip:
+    if profile.is_flat_punch:
         bad = bad | (radius > 0)
         detail = "a flat punch has no slip annulus: prescribe tangential_force or another load"
     if some(bad):
         index = first_index(bad) if radius.ndim else ()
         raise InputError(("tangential", "stick_radius", *index), detail, bad)
-    if profile.has_no_partial_slip:
+    if profile.is_flat_punch:
         return 0 * radius, contact.coordinate + 0 * radius, _POSITIVE, all_slips, _NO_EXCESS
     c = np.maximum(radius, innermost)
     edge = profile.coordinate_from_radius(c)

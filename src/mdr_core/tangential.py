@@ -119,7 +119,7 @@ class TangentialContact(validity.ContactResults):
     def slip_width(self) -> Array:
         """a - c [length]."""
         a = self.normal.contact_radius
-        width = 0 * self.width if self.normal.profile.has_no_partial_slip else self.width
+        width = 0 * self.width if self.normal.profile.is_flat_punch else self.width
         return where(self.full_slip, a, width) if some(self.full_slip) else width
 
     @cached_property

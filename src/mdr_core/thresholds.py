@@ -84,7 +84,7 @@ def of_contact(contact: NormalContact, tolerance: float) -> tuple[Threshold, ...
         )
         raise InputError(("holds_within",), detail)
     profile, e_star, a = contact.profile, contact.e_star, contact.contact_radius
-    flat, loaded = profile.has_no_partial_slip, contact.loaded
+    flat, loaded = profile.is_flat_punch, contact.loaded
     with np.errstate(all="ignore"):
         arm = contact.indentation_depth if flat else a * profile.depth_slope(contact.coordinate)
         work = where(loaded, e_star * np.square(tolerance * arm) / (2 * pi * a), 0.0)

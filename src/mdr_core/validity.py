@@ -414,7 +414,7 @@ def infinite_deviator(
     poissons_ratios : of the elastic bodies [1].
     slips_from : least radius with slip [length]; infinite without.
     """
-    if profile.has_no_partial_slip or not poissons_ratios or min(poissons_ratios) < _INCOMPRESSIBLE:
+    if profile.is_flat_punch or not poissons_ratios or min(poissons_ratios) < _INCOMPRESSIBLE:
         return number(1.0) > 0
     return np.isinf(profile.tip_pressure) | (radius >= slips_from)
 

@@ -101,7 +101,7 @@ def profile_of(kind: str) -> Profile:
 
 def solved(profile: Profile) -> tangential.TangentialContact:
     """Contact of radius 1 with stick radius 0.8; a flat punch takes forces."""
-    if profile.has_no_partial_slip:
+    if profile.is_flat_punch:
         pressed = normal.solve(profile, 1.0, normal_force=1.0)
         return tangential.solve(pressed, 0.8, FRICTION, tangential_force=0.5 * FRICTION)
     pressed = normal.solve(profile, 1.0, contact_radius=1.0)

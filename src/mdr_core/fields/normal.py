@@ -206,7 +206,7 @@ def stress(profile: Profile, annulus: Annulus, a: float, r: Array) -> Array:
     result = np.zeros(r.shape)
     if inside.any():
         result[inside] = profile.pressure_kernel(annulus, r[inside])
-    if profile.has_no_partial_slip and annulus.outer > 0:
+    if profile.is_flat_punch and annulus.outer > 0:
         # The stress is infinite at the edge of a flat punch.
         result[r == a] = inf
     return result
@@ -227,7 +227,7 @@ def _depth_left(profile: Profile, a: float, coordinate: float, r: Array) -> Arra
     """d - g(r), as the step from r to a, which is free of cancellation near the edge [length]."""
     result = np.zeros(r.shape)
     inside = r < a
-    if profile.has_no_partial_slip:
+    if profile.is_flat_punch:
         result[r <= a] = coordinate
     elif inside.any():
         least = float(profile.first_radius)

@@ -184,7 +184,7 @@ def grid(contact: Contact | ContactState, points: int) -> Array:
     profile = (contact if isinstance(contact, ContactState) else contact.normal).profile
     breaks = [np.ravel(np.asarray(b, dtype=float)) for b in profile.breaks]
     end = 1.5 * float(np.max(known.radius)) or 1.0
-    if not profile.has_no_partial_slip:
+    if not profile.is_flat_punch:
         end = min(end, float(np.max(profile.domain)))
     exact = known.error == 0
     fixed = np.unique(np.concatenate([np.zeros(1), *breaks, known.radius[exact]]))

@@ -182,7 +182,7 @@ def foundation_shear(contact: TangentialContact | ContactState, radius: ArrayLik
 
     def values(load: Traction, r: Array) -> Array:
         profile, result = load.profile, np.zeros(r.shape)
-        if profile.has_no_partial_slip:
+        if profile.is_flat_punch:
             # All springs carry the same load.
             result[r <= load.radius[-1]] = load.modulus * (load.slope @ load.width)
             return result
@@ -229,7 +229,7 @@ def _at_end(state: ContactState) -> Traction:
     if not state.in_contact:
         ends, nothing = np.zeros(1), np.zeros(0)
         return Traction(*known, ends, ends, nothing, nothing, nothing)
-    if profile.has_no_partial_slip:
+    if profile.is_flat_punch:
         depth = state.load[:1] / modulus
         ends = np.append(0.0, state.coordinate[-1])
         rows = profile.contact_radius(ends), np.abs(depth), np.sign(depth), 0 * depth
@@ -258,7 +258,7 @@ def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
         e_star, mu_e, ratio, *places, sign, slides, excess, moved = (part[load] for part in columns)
         top, a, edge, c, width = places
         ends, radii, widths, slopes, above = [0.0, top], [flat, a], [top], [0.0], [0.0]
-        if profile.has_no_partial_slip:
+        if profile.is_flat_punch:
             widths = [top if slides else width]
             slopes = [sign if widths[0] > 0 else 0.0]
         elif slides:

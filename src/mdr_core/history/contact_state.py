@@ -185,7 +185,7 @@ class ContactState(Results):
     @property
     def slip_fronts(self) -> Array:
         """Radii inside the contact between two segments of q_x, ascending [length]."""
-        if self.profile.has_no_partial_slip:
+        if self.profile.is_flat_punch:
             return np.zeros(0)
         return self.profile.contact_radius(self.coordinate[1:-1])
 
@@ -193,7 +193,7 @@ class ContactState(Results):
     def front_errors(self) -> Array:
         """Errors of `slip_fronts` due to rounding of the prescribed forces [length]."""
         forces, fronts = (np.array([edge[i] for edge in self._edges]) for i in (1, 0))
-        if self.profile.has_no_partial_slip or fronts.size < 3:
+        if self.profile.is_flat_punch or fronts.size < 3:
             return np.zeros(0)
         moved = np.minimum(forces[1:-1] + ROUNDING * forces[-1], forces[-1])
         ends = np.array([fronts[1:-1], self.profile.coordinate_from_reduced_force(moved)])

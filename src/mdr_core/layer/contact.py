@@ -73,7 +73,7 @@ class LayerContact(NormalContact):
     @cached_property
     def maximum_pressure(self) -> Array:
         """Largest pressure [pressure]."""
-        if self.profile.has_no_partial_slip:
+        if self.profile.is_flat_punch:
             return self.half_space.maximum_pressure
         part = largest_with(self.profile, self.coordinate, self.loaded, self.correction)
         return where(self.loaded, self.e_star * part, 0.0)
@@ -92,7 +92,7 @@ class LayerContact(NormalContact):
         at = 2 * (square + (1 - square) * z * z) - 1
         rate = (weights * chebval(at, chebder(found)[:, None], tensor=False)).sum(axis=0)
         root = np.sqrt(np.maximum(a - radius, 0.0) * (a + radius))
-        jump = found.sum(axis=0) if self.profile.has_no_partial_slip else 0.0
+        jump = found.sum(axis=0) if self.profile.is_flat_punch else 0.0
         with np.errstate(divide="ignore"):
             edge = jump / np.where(root > 0, root, np.inf)
         return np.asarray((edge - 4 * root / (a * a) * rate) / pi)

@@ -42,7 +42,7 @@ class DepthCurve:
 
         Parameters: the profile, the layer, and the depth [length].
         """
-        if profile.has_no_partial_slip:
+        if profile.is_flat_punch:
             return cls(profile, layer, np.inf)
         with suppress(InputError):
             contact = solve(profile, Material(1.0, layer=layer), indentation_depth=depth)
@@ -91,14 +91,14 @@ class DepthCurve:
     @property
     def error(self) -> float:
         """Estimated relative error by the interpolation [1]."""
-        if self.profile.has_no_partial_slip:
+        if self.profile.is_flat_punch:
             return 0.0
         return float(np.abs(self._ratios[-2:]).max())
 
     @cached_property
     def deepest(self) -> float:
         """Largest depth [length], infinite under a flat punch."""
-        if self.profile.has_no_partial_slip:
+        if self.profile.is_flat_punch:
             return np.inf
         return float(self._at(np.atleast_1d(self.end))[0][0])
 
@@ -109,7 +109,7 @@ class DepthCurve:
             value, _, _, slope = self._at(s)
             return value, s * slope / value
 
-        if self.profile.has_no_partial_slip:
+        if self.profile.is_flat_punch:
             stiffness = states(self.profile, self.layer, np.ones(1)).stiffness[0]
             return stiffness * depth, full(stiffness, depth)
         goal = np.minimum(depth.ravel(), self.deepest)

@@ -113,7 +113,7 @@ def _block(
     stiffness = 2 * a * (punch @ whole)
     growth = punch @ rise + q1 * (kernel[:, -1, -1] + _dot(edge, moved))
     condition = stiffness / where(a > 0, 2 * a, 1.0) + 0 * part
-    if profile.has_no_partial_slip:
+    if profile.is_flat_punch:
         # The contact coordinate of a flat punch, whose radii may be one for each contact.
         depth = coordinate
         force, correction = depth * stiffness, depth[:, None] * (punch - 1)

@@ -90,7 +90,7 @@ def _coordinate(profile: Profile, layer: Layer, name: str, load: Array) -> Array
     if name == "contact_radius":
         start = coordinate_from_radius(profile, load)
         beyond = np.asarray(load > reach)
-    elif profile.has_no_partial_slip:
+    elif profile.is_flat_punch:
         start = load / states(profile, layer, np.ones(1)).stiffness[0] if of_force else load
         beyond = np.asarray(profile.contact_radius(start) > reach)
     else:

@@ -193,8 +193,8 @@ class Profile(ABC):
         return 0.0
 
     @property
-    def has_no_partial_slip(self) -> bool:
-        """True if there is no partial slip: the whole contact sticks up to full slip."""
+    def is_flat_punch(self) -> bool:
+        """True if the radius is the same at every load: the punch sticks as a whole."""
         return False
 
     @property

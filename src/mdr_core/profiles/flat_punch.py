@@ -54,7 +54,7 @@ class FlatPunch(Profile):
         return (self.radius,)
 
     @property
-    def has_no_partial_slip(self) -> bool:
+    def is_flat_punch(self) -> bool:
         return True
 
     def contact_radius(self, coordinate: Array) -> Array:

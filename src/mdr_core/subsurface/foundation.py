@@ -73,7 +73,7 @@ class Foundation:
             )
         radii = map(float, profile.infinite_pressure_radii)
         self.infinite_radii = [b for b in radii if self.loaded and b <= load.radius[-1]]
-        if profile.has_no_partial_slip:
+        if profile.is_flat_punch:
             # The slope of g is a single step at the contact radius.
             a, zero = load.radius[-1:], np.zeros((1, 1))
             mass = load.coordinate[-1:] + 1j * self._slope * load.width

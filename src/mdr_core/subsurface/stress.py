@@ -143,7 +143,7 @@ def on_rings(under: Foundation, place: Rings, nu: float) -> StressTensor:
     moments = under.moments(r, depth)
     infinite = (z == 0) & np.isin(r, under.infinite_radii)
     origin = (z == 0) & (r == 0) & ~infinite
-    if origin.any() and not load.profile.has_no_partial_slip:
+    if origin.any() and not load.profile.is_flat_punch:
         # Powers next to a cone approach the tractions there slowly. Om_r/r is a half of V_z.
         whole = load._replace(slope=np.ones_like(load.slope))
         p, tau = (each.stress(np.zeros(1)) for each in (whole, load))

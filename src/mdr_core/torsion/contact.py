@@ -309,10 +309,10 @@ def _slip_width(contact: NormalContact, stick: Array) -> Array:
         "zero, the rotation grows without bound"
     )
     _reject("stick_radius", stick, outside, detail)
-    if profile.has_no_partial_slip:
+    if profile.is_flat_punch:
         detail = "a flat punch sticks up to a finite rotation: prescribe torque or rotation"
         _reject("stick_radius", stick, (stick == a) & contact.loaded, detail)
-    if contact.control == "contact_radius" or profile.has_no_partial_slip:
+    if contact.control == "contact_radius" or profile.is_flat_punch:
         return a - stick
     # The contact coordinate of a computed edge is accurate; its radius may not be.
     past = np.maximum(contact.coordinate - (stick - profile.first_radius), 0.0)

@@ -65,7 +65,7 @@ class VirginCurves:
         edge : contact radii as contact coordinates, > 0, shape (n,).
         depth : ln(a/c) at the end of the curves.
         """
-        self.a, punch, self.depth = profile.contact_radius(edge), profile.has_no_partial_slip, depth
+        self.a, punch, self.depth = profile.contact_radius(edge), profile.is_flat_punch, depth
         # A flat punch is a flat with one step of g, at the edge.
         self.step = edge / self.a if punch else 0 * self.a
         flat, past = (0.0, self.a) if punch else (float(profile.first_radius), edge)

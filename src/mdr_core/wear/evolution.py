@@ -308,7 +308,7 @@ def solve(
         if np.ndim(number):
             raise InputError((place,), "must be a single number")
     tangential_contact = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
-    if tangential_contact.full_slip and contact.profile.has_no_partial_slip:
+    if tangential_contact.full_slip and contact.profile.is_flat_punch:
         detail = "full slip of a flat punch: the pressure at its edge is infinite; round the edge"
         raise InputError(("tangential", name), detail)
     if tangential_contact.full_slip and name == "tangential_force":

@@ -93,7 +93,7 @@ class LimitingWear(validity.ContactResults):
     def wear_width(self) -> Array:
         """Width of the worn annulus [length], free of cancellation however narrow it is."""
         rests = self.stick_zone.step <= 0
-        if self.normal.profile.has_no_partial_slip:
+        if self.normal.profile.is_flat_punch:
             worn = where(rests, 0.0, self.normal.contact_radius)
         else:
             target = where(self.stick_zone.unbounded, 0.0, self.stick_zone.step)
@@ -137,7 +137,7 @@ class LimitingWear(validity.ContactResults):
         displacement = contact.tangential_displacement
         if contact.control == "tangential_displacement":
             return broadcast(displacement, stick_zone.step.shape)
-        if not self.normal.profile.has_no_partial_slip:
+        if not self.normal.profile.is_flat_punch:
             displacement = contact.displacement_ratio * stick_zone.step
         return where(stick_zone.unbounded | stick_zone.separated, inf, displacement)
 
@@ -145,7 +145,7 @@ class LimitingWear(validity.ContactResults):
     def tangential_force(self) -> Array:
         """Amplitude F_x [force]: constant, or 2 mu E* c (d - g(c))."""
         contact = self.tangential_contact
-        if contact.control == "tangential_force" or self.normal.profile.has_no_partial_slip:
+        if contact.control == "tangential_force" or self.normal.profile.is_flat_punch:
             return where(self.stick_zone.separated, 0.0, contact.tangential_force)
         unbounded, modulus = self.stick_zone.unbounded, 2 * self.normal.e_star
         carried = modulus * self.stick_zone.radius * where(unbounded, 0.0, self.stick_zone.step)

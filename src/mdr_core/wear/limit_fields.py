@@ -20,7 +20,7 @@ def worn_depth(stick_zone: LimitingStick, outer: Array, r: Array) -> Array:
     profile, c, step = stick_zone.profile, np.ravel(stick_zone.radius), np.ravel(stick_zone.step)
     inner, end = c[:, None], np.ravel(outer)[:, None]
     # In full slip the axis wears as well, and a flat punch wears up to its edge.
-    worn = (r <= end if profile.has_no_partial_slip else r < end) & ((r > inner) | (inner == 0))
+    worn = (r <= end if profile.is_flat_punch else r < end) & ((r > inner) | (inner == 0))
     worn &= (step > 0)[:, None]
 
     def values(load: Indices, at: Array) -> Array:
@@ -48,7 +48,7 @@ def pressure(stick_zone: LimitingStick, e_star: Array, r: Array) -> Array:
         return np.asarray(moduli[load] * (inner + annulus))
 
     result = _filled(r < c[:, None], r, values)
-    singular = (c > 0) & ((step > 0) | (profile.has_no_partial_slip & (edge > 0)))
+    singular = (c > 0) & ((step > 0) | (profile.is_flat_punch & (edge > 0)))
     result[(r == c[:, None]) & singular[:, None]] = inf
     return result.reshape(radius.shape + r.shape)
 

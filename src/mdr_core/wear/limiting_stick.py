@@ -80,7 +80,7 @@ def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> L
     normal, profile = contact.normal, contact.normal.profile
     step = broadcast(amplitude / contact.displacement_ratio, contact.width.shape)
     unbounded = contact.full_slip
-    if profile.has_no_partial_slip:
+    if profile.is_flat_punch:
         return _from(contact, step, unbounded=unbounded)
     top = broadcast(normal.coordinate, step.shape)
     target = where(unbounded | (contact.width <= 0), 0.0, step)
@@ -118,7 +118,7 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
     normal, profile = contact.normal, contact.normal.profile
     target = _step_of_force(contact, amplitude, np.ones(()))
     target = broadcast(target, contact.width.shape)
-    if profile.has_no_partial_slip:
+    if profile.is_flat_punch:
         return _from(contact, full(0.0, target), separated=contact.full_slip)
     top = broadcast(normal.coordinate, target.shape)
 

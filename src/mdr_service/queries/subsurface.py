@@ -77,7 +77,7 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     if searched:
         searched["search_error_estimate"] = _OF_SEARCH
     message = "stresses are infinite on the surface, where the pressure is"
-    method = "closed_form" if contact.profile.has_no_partial_slip else "quadrature"
+    method = "closed_form" if contact.profile.is_flat_punch else "quadrature"
     return response(
         query,
         source,

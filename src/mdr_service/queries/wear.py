@@ -99,7 +99,7 @@ def _result(query: WearQuery | EvolutionQuery, worn: Wear, unbounded: Flags) -> 
     radius = worn.grid(query.points) if query.points else np.array(query.radius or ())
     warnings, error = list[Notice](), None
     infinite: dict[str, Any] = {"pressure": True}
-    if worn.normal.profile.has_no_partial_slip:
+    if worn.normal.profile.is_flat_punch:
         infinite |= dict.fromkeys(_PROFILES, True)
     if radius.size:
         surface: Result = {name: _surface(worn, name, radius, query) for name in query.quantities}
