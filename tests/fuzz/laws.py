@@ -22,7 +22,7 @@ _ONSET: Final = "yield_onset_force."
 _NOT_NUMBERS: Final = frozenset(
     {
         *("method", "error_estimate", "field_error_estimate", "search_error_estimate"),
-        *("warnings", "regime", "step"),
+        *("warnings", "sources", "holds_while", "regime", "step"),
     }
 )
 _SIGNED: Final = frozenset(
