@@ -18,7 +18,7 @@ _ESTIMATE: Final = 1e-2
 _ESTIMATE_OF_WEAR: Final = 0.3
 """Largest error estimate of wear over the cycles, at the coarsest resolution."""
 _NULL_CODES: Final = frozenset({"singular", "endless_wear"})
-_ONSET: Final = "yield_onset_force."
+_UNSTATED: Final = ("yield_onset_force.", "pressure_data_error")
 _NOT_NUMBERS: Final = frozenset(
     {
         *("method", "error_estimate", "field_error_estimate", "search_error_estimate"),
@@ -55,8 +55,8 @@ def violations(name: str, query: Mapping[str, Any], result: Result) -> Iterator[
     """Yield the laws that a result violates."""
     arrays = numbers(result)
     codes = {warning["code"] for warning in result["warnings"]}
-    # The onset of yield is null where no load reaches the yield strength.
-    finite = [each for quantity, each in arrays.items() if not quantity.startswith(_ONSET)]
+    # No load reaches the yield strength; the pressure or its error is infinite.
+    finite = [each for quantity, each in arrays.items() if not quantity.startswith(_UNSTATED)]
     if any(np.isnan(values).any() for values in finite) and not codes & _NULL_CODES:
         yield "null without a warning"
     largest_estimate = _ESTIMATE_OF_WEAR if name == "evolution" else _ESTIMATE
