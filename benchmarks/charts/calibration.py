@@ -1,8 +1,8 @@
 """Calibration chart: true error over stated error, for every query whose error is stated.
 
 `make chart-calibration`. References are the banks and oracles of the tests (mpmath), closed forms
-of curves and loops, and finer solutions of impacts and of wear. A query is one case: its error and its
-estimate are the largest over its results. Errors below half a unit in the last place are not
+of curves and loops, and finer solutions of impacts and of wear. A query is one case: its error and
+its estimate are the largest over its results. Errors below half a unit in the last place are not
 resolved by the references, and count as zero.
 """
 

@@ -207,7 +207,7 @@ def layers(count: int) -> Iterator[Pair]:
 def curves(count: int) -> Iterator[Pair]:
     """Fits of F = E* k (d - d0)^m + F0, half of them with noise.
 
-    Errors are relative to the standard errors or the parameters, whichever are larger.
+    Errors are relative to E*, the range of the depths and the largest force.
     """
     rng = np.random.default_rng(10)
     for number in range(count):
@@ -226,9 +226,9 @@ def curves(count: int) -> Iterator[Pair]:
         )
         expected = least_squares(depth, force, k, m, found.contact_point)
         values = found.e_star, found.contact_point, found.force_offset
-        sizes = np.maximum(np.abs(values), found.standard_errors)
+        sizes = found.e_star, np.ptp(depth), force.max()
         errors = [float(abs(mpf(v) - t)) for v, t in zip(values, expected, strict=True)]
-        yield float(np.max(errors / sizes)), found.error_estimate
+        yield float(np.max(np.divide(errors, sizes))), found.error_estimate
 
 
 def least_squares(
