@@ -22,13 +22,15 @@ from mpmath import mpf
 from tests.core import test_fields_bank, test_impact, test_torsion
 from tests.core.comparison import EPS, contact_of, profile_from, relative_error
 from tests.core.random_cases import PROFILE_GENERATORS
+from tests.core.test_history_bank import material
 from tests.core.test_subsurface_bank import profile_from as body_from
+from tests.core.test_wear_limit_bank import solved as limiting_wear
 from tests.oracles import bank
 from tests.oracles.torsion_reference import Twist
 from tests.stability import fine_wear
-from tests.stability.test_error_estimates import BANKS
+from tests.stability.test_error_estimates import BANKS, largest_error
 
-from mdr_core import fields, normal, subsurface, tangential
+from mdr_core import fields, history, normal, subsurface, tangential
 from mdr_core.wear import evolution
 
 if TYPE_CHECKING:
@@ -47,6 +49,28 @@ def of_bank(name: str) -> Callable[[], Iterator[Pair]]:
             yield case.error, case.estimate
 
     return pairs
+
+
+def loads_of_wear() -> Iterator[Pair]:
+    """Each load of a case of the bank is a query."""
+    for case in bank.load("wear_limit"):
+        for index, given in enumerate(case["given"]):
+            found = limiting_wear(case, [given])
+            expected = {name: [row[index]] for name, row in case["expected"].items()}
+            yield largest_error(found, expected), found.error_estimate
+
+
+def loads_of_cycles() -> Iterator[Pair]:
+    """Each amplitude of a case of the bank is a query."""
+    for case in bank.load("history_cycles"):
+        for index, given in enumerate(case["given"]):
+            loads = {case["control"]: case["load"], case["tangential_control"]: given}
+            found = history.cycles(*material(case), **loads, count=2)
+            error = max(
+                relative_error(float(getattr(found, name)[1]), row[index])
+                for name, row in case["expected"].items()
+            )
+            yield error, found.error_estimate
 
 
 def of_field(source: Any, name: str, radius: Any, expected: Any) -> Pair | None:
@@ -139,7 +163,7 @@ QUERIES: dict[str, Callable[[], Iterator[Pair]]] = {
     "normal": of_bank("normal"),
     "tangential": lambda: chain(of_bank("tangential")(), drawn.pushed(560)),
     "history, paths": lambda: chain(of_bank("paths")(), drawn.paths(980)),
-    "history, cycles": lambda: chain(of_bank("cycles")(), drawn.cycles(920)),
+    "history, cycles": lambda: chain(loads_of_cycles(), drawn.cycles(100)),
     "impact": impacts,
     "torsion": twists,
     "layer": lambda: drawn.layers(1000),
@@ -147,7 +171,7 @@ QUERIES: dict[str, Callable[[], Iterator[Pair]]] = {
     "fit of a loop": lambda: drawn.loops(1000),
     "stress": lambda: chain(surface(), drawn.stresses(320)),
     "subsurface": lambda: chain(beneath(), drawn.points_beneath(660)),
-    "wear": lambda: chain(of_bank("wear limits")(), drawn.worn(830)),
+    "wear": lambda: chain(loads_of_wear(), drawn.worn(580)),
     "wear over cycles": worn,
 }
 #: Errors of each query, with its stated errors: half an hour for all, kept for a drawing in pieces.
