@@ -17,7 +17,7 @@ export OPENBLAS_NUM_THREADS := 1
 # Without bytecode, each of the hundred processes that the tests start would compile every module.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run test test-portable test-all random fuzz check bench bench-gate faults pages sweeps charts figures openapi verification docs dist lock clean
+.PHONY: run test test-portable test-packages test-all random fuzz check bench bench-gate faults pages sweeps charts figures openapi verification docs dist sbom lock clean
 .DELETE_ON_ERROR:
 
 # `exec` makes the service itself the child of make, so that a signal to make reaches it.
@@ -44,6 +44,23 @@ test-portable: .venv/development
 	OPENBLAS_CORETYPE=Nehalem GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA \
 	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(UNITS)')" \
 	$(BIN)/python -m pytest --numprocesses logical --dist worksteal -m "not long" $(NUMBERS)
+
+# The fast tests with the lowest and with the newest packages of the ranges, on the oldest and the newest Python that uv
+# finds or fetches: ten minutes. Warnings of deprecated names are errors.
+OLDEST := 3.11
+NEWEST := 3.14
+test-packages: build/uv/bin/uv
+	for python in $(OLDEST) $(NEWEST); do for packages in lowest-direct highest; do \
+		folder=build/packages/$$python-$$packages; echo "$$folder" && \
+		$< venv --quiet --clear --python $$python $$folder && \
+		$< pip install --quiet --python $$folder/bin/python --resolution $$packages --editable '.[dev]' && \
+		PATH="$(CURDIR)/$$folder/bin:$$PATH" $$folder/bin/python -m pytest \
+			--numprocesses logical --dist worksteal -m "not long" || exit 1; \
+	done; done
+
+build/uv/bin/uv:
+	$(PYTHON) -m venv build/uv
+	build/uv/bin/python -m pip --disable-pip-version-check --quiet install uv
 
 check: .venv/development
 	$(BIN)/ruff check
@@ -77,15 +94,15 @@ sweeps: .venv/development
 	$(BIN)/python docs/figures/sweep_map.py
 
 # The charts of docs/accuracy.md: every one by `make charts`, one alone by `make chart-NAME`.
-CHARTS := pressure traction pareto hertz_contact partial_slip history contact_laws wear_evolution scaling wire stability calibration
+CHARTS := pressure traction pareto hertz_contact partial_slip history contact_laws wear_evolution scaling wire stability calibration summary
 charts:
 	for name in $(CHARTS); do $(MAKE) --no-print-directory chart-$$name || exit 1; done
 
 chart-%: .venv-bench/peers
 	PYTHONPATH=.:benchmarks OMP_NUM_THREADS=1 .venv-bench/bin/python benchmarks/charts/$*.py
 
-# Need no reference codes: the references are in the tests.
-chart-stability chart-calibration: .venv/development
+# Need no reference codes: the references are in the tests and in the files of other charts.
+chart-stability chart-calibration chart-summary: .venv/development
 	PYTHONPATH=.:benchmarks $(BIN)/python benchmarks/charts/$(@:chart-%=%).py
 
 # Figures of the service under load and attack, over loopback: half an hour of a quiet machine.
@@ -122,6 +139,15 @@ dist: export SOURCE_DATE_EPOCH ?= $(shell git log -1 --format=%ct)
 dist: .venv/development
 	$(BIN)/python -m build --no-isolation
 	MDR_PLAIN=1 $(BIN)/python -m build --no-isolation
+
+# The packages of the service with their versions and hashes, as CycloneDX.
+sbom: build/sbom/bin/cyclonedx-py
+	mkdir -p dist
+	$< requirements requirements.lock --pyproject pyproject.toml --output-reproducible -o dist/mdr.cdx.json
+
+build/sbom/bin/cyclonedx-py:
+	$(PYTHON) -m venv build/sbom
+	build/sbom/bin/python -m pip --disable-pip-version-check --quiet install cyclonedx-bom
 
 # Needs uv on the path, and only after a dependency has changed.
 LOCK := uv pip compile --quiet --generate-hashes --no-header --no-annotate --no-emit-index-url \

@@ -146,6 +146,30 @@ def table(header: Sequence[str], rows: Iterable[Sequence[object]], name: str | N
             csv.writer(file, lineterminator="\n").writerows([header, *lines])
 
 
+#: Relative errors that come with a result: `model_error_pressure` of the README's ball, a modulus,
+#: and the `data_error` of examples/tip.csv under 1 µN (docs/gallery.md).
+ERRORS = (
+    ("model of a ball", 1.8e-4),
+    ("modulus to 1 %", 1e-2),
+    ("measured points", 9e-2),
+)
+#: Times [s]: a small request over HTTP (wire.csv), a frame of a screen, what a person notices.
+TIMES = (("a request", 6e-4), ("a frame", 1 / 60), ("a person", 0.1))
+
+
+def sufficient(ax: Axes) -> None:
+    """Shade the errors below those of model and input, and mark times that are short enough."""
+    low, high = ax.get_ylim()
+    right = ax.get_xlim()[1]
+    for name, error in ERRORS:
+        ax.axhspan(low, error, color=GREEN, alpha=0.05, lw=0, zorder=0)
+        ax.text(right, error, f"{name} ", fontsize=5, color=GREEN, ha="right", va="top")
+    for name, time in TIMES:
+        ax.axvline(time, color="0.6", lw=0.7, ls=":", zorder=0)
+        ax.text(time, low, f" {name}", fontsize=5, color="0.4", rotation=90, va="bottom")
+    ax.set_ylim(low, high)
+
+
 def rows_of(name: str) -> list[dict[str, str]]:
     """Rows of docs/charts/NAME.csv."""
     with (FOLDER / f"{name}.csv").open(encoding="utf-8", newline="") as file:

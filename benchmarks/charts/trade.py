@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from cases import Case, cases, errors
-from drawing import BLUE, BROWN, GREEN, MDR_COLOR, VIOLET, panels, rows_of, save, table
+from drawing import BLUE, BROWN, GREEN, MDR_COLOR, VIOLET, panels, rows_of, save, sufficient, table
 from machine import footer
 from measure import medians
 from methods import BARE, MethodRun, method_runs
@@ -77,7 +77,8 @@ def draw(quantity: str) -> None:
             kept = [0, *(np.flatnonzero(np.diff(best)) + 1)]
             x, y = np.array(points)[kept].T
             ax.loglog(x, y, "o-", color=color, label=name, zorder=3 if "MDR" in name else 2)
-        ax.set(ylim=(FLOOR / 2, 30), title=case, xlim=(1e-5, 2.0))
+        ax.set(ylim=(FLOOR / 2000, 30), title=case, xlim=(1e-5, 2.0))
+        sufficient(ax)
     for ax in axes:
         subplot = ax.get_subplotspec()
         if subplot.is_first_col():

@@ -108,7 +108,7 @@ class Fit(validity.ContactResults):
     misfit: float
     """Probability that residuals of the right shape are as far from noise as these [1]."""
     error_estimate: float
-    """Bound on the numerical error of the parameters, over their standard errors or sizes [1]."""
+    """Bound on the numerical error of the parameters, over their sizes [1]."""
     notices: tuple[Notice, ...]
     """Warnings about the residuals and the parameters."""
     youngs_modulus: float | None = None
@@ -596,6 +596,9 @@ class _Model:
         contact = solve(self.profile, material, indentation_depth=deepest)
         condition = float(np.linalg.norm(inverse, 2)) if self.fit else 1.0
         interpolated = 0.0 if self.on_layer is None else self.on_layer.error
+        # The step of Gauss and Newton to the minimum; the search ends where squares no longer fall.
+        step = np.abs(inverse @ (q.T @ residual)).max(initial=0.0)
+        unfinished = 2 * float(step / np.linalg.norm(self.force))
         sigma = noise or scatter
         errors = sigma * deviations / scale
         is_noisy = scatter > ROUNDING * float(np.abs(self.force).max())
@@ -613,7 +616,7 @@ class _Model:
             residual,
             sigma,
             misfit,
-            condition * (contact.error_estimate + interpolated),
+            condition * (contact.error_estimate + interpolated) + unfinished,
             (
                 *self._doubts(code, misfit),
                 *self._open(found, scatter * deviations / scale, scatter if is_noisy else 0.0),

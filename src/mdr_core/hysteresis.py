@@ -74,7 +74,7 @@ class LoopFit(validity.ContactResults):
     misfit: float
     """Probability that residuals of the right model are as far from noise as these [1]."""
     error_estimate: float
-    """Bound on the numerical error of the parameters, over their standard errors or sizes [1]."""
+    """Bound on the numerical error of the parameters, over their sizes [1]."""
     notices: tuple[Notice, ...]
     """Warnings about the residuals and the parameters."""
     quantities: ClassVar[tuple[str, ...]] = (
@@ -285,13 +285,16 @@ class _Loop:
         scatter = float(np.sqrt(residual @ residual / (residual.size - start.size)))
         if not scale.all():
             raise self.refused()
-        _, values, effects = np.linalg.svd(slopes / scale, full_matrices=False)
+        directions, values, effects = np.linalg.svd(slopes / scale, full_matrices=False)
         if values[-1] < _SAME:
             raise self.refused()
         inverse = effects.T / values
         deviations = np.linalg.norm(inverse, axis=1)
         # The model is exact to rounding.
         errors = max(scatter, EPS) * deviations / scale
+        # The step of Gauss and Newton to the minimum; the search ends where squares no longer fall.
+        step = np.abs(inverse @ (directions.T @ residual)).max()
+        unfinished = 2 * float(step / np.linalg.norm(measured))
         if _HALF * errors[:2].max() > _WIDEST:
             raise self.refused()
         code, misfit = residuals.worst(
@@ -324,7 +327,7 @@ class _Loop:
             residual * self.size,
             scatter * self.size,
             misfit,
-            float(law.error_estimate / values[-1]),
+            float(law.error_estimate / values[-1]) + unfinished,
             tuple(found),
         )
 

@@ -88,7 +88,11 @@ def _fields(query: str) -> Mapping[str, Field]:
         # A load takes a number or a list; a case of a sweep has one number.
         if name not in _OVER_RADIUS and not (name in found and leaf["type"] == "array"):
             low, high = leaf.get("minimum", -inf), leaf.get("maximum", inf)
-            found[name] = Field(leaf["type"], low, high)
+            if leaf.get("items", {}).get("type") == "string":
+                # Names have a column each, because `flat` gives each of them a name.
+                found[f"{name}.#"] = Field("string", low, high)
+            else:
+                found[name] = Field(leaf["type"], low, high)
     return found
 
 

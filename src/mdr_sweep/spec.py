@@ -27,17 +27,24 @@ QUANTITIES: Final[Mapping[str, tuple[str, ...]]] = {
     "impact": Impact.quantities[2:],
     "wear": LimitingWear.quantities,
     "evolution": WearEvolution.quantities[1:],
+    # Parameters and statistics of a curve; its points and lists of errors are not columns.
+    "fit": ("e_star", "contact_point", "force_offset", "work_of_adhesion", "noise", "misfit"),
+    "tangential_fit": (
+        *("g_star", "friction_coefficient", "force_offset", "rig_compliance"),
+        *("noise", "misfit", "dissipated_energy"),
+    ),
 }
 """Quantities that a sweep computes by default, by query."""
 ONLY_IF_NAMED: Final[Mapping[str, tuple[str, ...]]] = {
     "normal": ("maximum_pressure", *MODEL_ERRORS, "data_error", *PULL_OFF),
     "tangential": ("maximum_pressure", "maximum_shear_stress", *MODEL_ERRORS, "data_error"),
     "torsion": ("maximum_pressure", *MODEL_ERRORS, "data_error"),
-    **dict.fromkeys(("impact", "wear", "evolution"), ("model_error",)),
+    **dict.fromkeys(("impact", "wear", "evolution", "tangential_fit"), ("model_error",)),
+    "fit": ("youngs_modulus", "youngs_modulus_error", *MODEL_ERRORS),
 }
 """Quantities that are computed if they are named. Maxima of fields take a search and can be
-infinite; `data_error` is NaN without a table, the pull-off NaN without adhesion, and the error of
-radius and pressure NaN but for round bodies."""
+infinite; `data_error` is NaN without a table, the pull-off NaN without adhesion, Young's modulus
+NaN without Poisson's ratio, and the error of radius and pressure NaN but for round bodies."""
 WARNING, ERROR = "warning", "error"
 TEXTS: Final = frozenset({"regime", WARNING, ERROR})
 """Columns of the result that are not numbers."""

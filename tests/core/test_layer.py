@@ -160,8 +160,8 @@ def _gauss(count: int) -> tuple[list[Any], list[Any]]:
     return nodes, weights
 
 
-def _solved(g: Any, base: str, nu: Any, part: Any) -> tuple[Any, Any]:
-    """Depth and force for a = E* = 1 with 30 digits, by Gauss's rule for the whole equation."""
+def layer_equation(shapes: Sequence[Any], base: str, nu: Any, part: Any) -> list[tuple[Any, Any]]:
+    """Depths and forces for a = E* = 1 with 30 digits, by Gauss's rule for the whole equation."""
     x, weight = _gauss(22)
     # Two rules beside each other for the waves.
     half, share = _gauss(36)
@@ -177,14 +177,21 @@ def _solved(g: Any, base: str, nu: Any, part: Any) -> tuple[Any, Any]:
     system = eye(size) - matrix(
         [[kernel[i, j] * weight[j] for j in range(size)] for i in range(size)]
     )
-    unit, shape = (lu_solve(system, matrix(right)) for right in ([1] * size, [g(z) for z in x]))
     at_edge = [kernel[size, j] * weight[j] for j in range(size)]
-    edge = [1, g(mpf(1))]
-    for k, load in enumerate((unit, shape)):
-        edge[k] += sum(part * value for part, value in zip(at_edge, load, strict=True))
-    depth = edge[1] / edge[0]
-    force = 2 * sum(z * (depth * u - s) for z, u, s in zip(weight, unit, shape, strict=True))
-    return depth, force
+
+    def solved(g: Any) -> tuple[list[Any], Any]:
+        """The load of the foundation at the nodes, and at the edge."""
+        load = lu_solve(system, matrix([g(z) for z in x]))
+        return load, g(mpf(1)) + sum(a * b for a, b in zip(at_edge, load, strict=True))
+
+    unit, unit_edge = solved(lambda _: mpf(1))
+    found = []
+    for g in shapes:
+        shape, edge = solved(g)
+        depth = edge / unit_edge
+        both = zip(weight, unit, shape, strict=True)
+        found.append((depth, 2 * sum(z * (depth * u - s) for z, u, s in both)))
+    return found
 
 
 def test_random_cases_with_thirty_digits() -> None:
@@ -195,8 +202,8 @@ def test_random_cases_with_thirty_digits() -> None:
         nu = float(rng.uniform(0, 0.5))
         exponent = float(rng.choice([1, 2, 3, 4, 6]))
         with mp.workdps(30):
-            depth, force = _solved(lambda x, n=exponent: x ** mpf(n), base, mpf(nu), mpf(part))
-            depth, force = float(depth), float(force)
+            shapes = [lambda x, n=exponent: x ** mpf(n)]
+            depth, force = map(float, layer_equation(shapes, base, mpf(nu), mpf(part))[0])
         # g = x^n of the profile C r^n.
         coefficient = float(
             normal.solve(Power(1.0, exponent), 1.0, contact_radius=1.0).indentation_depth

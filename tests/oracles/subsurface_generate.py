@@ -98,6 +98,7 @@ def kernels(x: mpf, r: mpf, z: mpf) -> list[mpf]:
     return [2 * value.real for value in values]
 
 
+@cache
 def derivatives(
     shape: Shape, a: mpf, c: mpf | None, r: mpf, z: mpf
 ) -> tuple[list[mpf], list[mpf] | None]:

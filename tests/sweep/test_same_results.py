@@ -8,7 +8,8 @@ import pytest
 
 from mdr_service.queries import QUERIES
 from mdr_service.queries.contacts import solve_tangential
-from mdr_service.schemas.flat import nested
+from mdr_service.schemas.examples import EXAMPLES
+from mdr_service.schemas.flat import flat, nested
 from mdr_sweep import vectorized
 from mdr_sweep.spec import Spec
 from tests.conftest import Client
@@ -54,21 +55,26 @@ BALL: Row = {
     "material.g_star": 8e10,
     "material.shear_modulus": 4e10,
 }
+ON_BASE = {name: BALL[name] for name in ("profile.kind", "profile.radius", "material.e_star")}
+ON_BASE |= {"load.normal_force": 10.0, "material.layer.base": "frictionless"}
+CURVE = flat(EXAMPLES["fit"]["hydrogel"]["value"])
+LOOP = flat(EXAMPLES["tangential_fit"]["ball_on_glass"]["value"])
 
 
 @pytest.mark.parametrize(
     ("query", "shared", "swept_field", "values"),
     [
-        ("torsion", {"load.normal_force": 10.0}, "torsion.torque", [0.0, 1e-5, -9e-5, 1.0]),
+        ("torsion", BALL | {"load.normal_force": 10.0}, "torsion.torque", [0.0, 1e-5, -9e-5, 1.0]),
         (
             "impact",
-            {"normal_mass": 1.0, "tangential_mass": 0.3, "normal_velocity": 1.0},
+            BALL | {"normal_mass": 1.0, "tangential_mass": 0.3, "normal_velocity": 1.0},
             "tangential_velocity",
             [0.0, 0.3, -2.0],
         ),
         (
             "evolution",
-            {
+            BALL
+            | {
                 "load.normal_force": 10.0,
                 "oscillation.tangential_force": 1.5,
                 "wear_coefficient": 1e-12,
@@ -77,12 +83,16 @@ BALL: Row = {
             "cycles",
             [[0.0], [1e3, 1e4], [1e9]],
         ),
+        ("fit", CURVE, "profile.radius", [4e3, 6e3, 0.0]),
+        ("fit", CURVE | {"layer.base": "frictionless"}, "layer.thickness", [1e4, 1e3, 10.0]),
+        ("tangential_fit", LOOP, "rig_compliance", [None, 0.0, -1.0]),
+        ("normal", ON_BASE, "material.layer.thickness", [1e-2, 1e-4, 1e-9]),
     ],
 )
 def test_rows_of_other_queries_equal_the_responses(
     client: Client, query: str, shared: Row, swept_field: str, values: list[Any]
 ) -> None:
-    rows = [BALL | shared | {swept_field: value} for value in values]
+    rows = [shared | {swept_field: value} for value in values]
     assert swept(query, rows) == [served(client, query, row) for row in rows]
 
 
