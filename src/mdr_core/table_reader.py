@@ -8,12 +8,12 @@ import json
 import re
 from collections.abc import Sequence
 from importlib.resources import files
-from math import isfinite
 from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
 
+from mdr_core.doubles import TINY
 from mdr_core.errors import InputError
 from mdr_core.typing import Array
 from mdr_core.validation import require_type
@@ -33,26 +33,38 @@ _MULTIPLIER: Final = (
     r"/ ?\S|10 ?\^|[x×*] ?10|1e[-+]?\d|(?i:(?<![a-z])(nano|micro|milli|kilo)(?![a-z]))"
 )
 _AREAS: Final = {"area", "a", "section", "areas"}
-_POINT: Final = r"(?ai)[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?"
-_COMMA: Final = r"(?ai)[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?"
-_BLANKS: Final = r",? +"
-# Separator of columns, and the form of a number. Blanks separate numbers with a decimal comma
-# before commas separate columns: `0,5 1,2` holds two numbers.
+_POINT: Final = re.compile(r"(?ai)[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?")
+_COMMA: Final = re.compile(r"(?ai)[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?")
+# Separator of columns, and the form of a number. Blanks, or a comma and a blank, separate numbers
+# with a decimal comma before commas separate columns: `0,5 1,2` holds two numbers.
 _DIALECTS: Final = (
     *((separator, form) for separator in "\t;" for form in (_POINT, _COMMA)),
-    *((_BLANKS, _COMMA), (",", _POINT), (_BLANKS, _POINT)),
+    *((" ", _COMMA), (",", _POINT), (" ", _POINT)),
 )
-_COMMENT: Final = r"\s*(#|%|!|//)+"
+# Signs of one meaning, marks of comments, comments behind numbers, and repeated blanks.
+_REPLACED: Final = (
+    ("\r\n?", "\n"),
+    ("−", "-"),
+    ("μ", "µ"),
+    ("\xa0", " "),
+    (r"(?m)^[^\S\n]*(#|%|!|//)+", "#"),
+    (r"[^\S\n][#!].*", ""),
+    (" {2,}", " "),
+)
 # Words before the names, or the units, of columns in a comment.
 _LABEL: Final = r"(?i)^(fancyNames|columns|headings?|units?)\s*[:=]\s*"
 # Any number, with whatever decimal sign.
-_NUMBERLIKE: Final = r"(?ai)[-+]?[\d.,]*\d[.,]?([ed][-+]?\d+)?"
+_NUMBERLIKE: Final = re.compile(r"(?ai)[-+]?[\d.,]*\d[.,]?([ed][-+]?\d+)?")
+_DECIMAL: Final = str.maketrans(",dD", ".ee")
 # Number of a line, and its cells.
 _Row = tuple[int, list[str]]
 # Bytes of the longest file, some 10^5 points: more take seconds.
 _LARGEST: Final = 4_000_000
 # Characters of the longest heading: tables of instruments have some hundred.
 _LONGEST: Final = 4_000
+# Height over radius, as written, above which columns without names may be h and A(h): A(h)/h of a
+# tip in nanometres is in the hundreds, f/r of a ball in micrometres over millimetres is 10.
+_STEEPEST: Final = 30.0
 _SQUARE: Final = r"(²|\^2|\*\*2|2)$"
 # A number before a unit, such as 10^-6, 1e-6 or x10-6.
 _FACTOR: Final = (
@@ -108,7 +120,8 @@ def read_table(
 
     The file may have decimal commas, any separator, headings, a row of units, comments, quotes and
     further columns. A column named A or area, in place of the radii, holds the cross-sections A(h)
-    of a tip: the radii are sqrt(A/pi). Two columns without a heading are radii and heights.
+    of a tip: the radii are sqrt(A/pi). Two columns without a heading are radii and heights, unless
+    they are so steep that they may be heights and areas.
 
     Parameters
     ----------
@@ -213,68 +226,87 @@ def _decoded(content: bytes) -> str:
 
 def parse(content: bytes, kind: Sequence[str]) -> ParsedFile:
     """Return the table of a file, a `PROFILE` or a `CURVE`, as it is written, or an InputError."""
-    text = _decoded(content).replace("−", "-").replace("μ", "µ").replace("\xa0", " ")
-    lines = [
-        (number, re.match(_COMMENT, line), _content(line))
-        for number, line in enumerate(re.split(r"\r\n|\r|\n", text), 1)
-    ]
+    lines = _lines(_decoded(content))
+    last = next((text for _, comment, text in reversed(lines) if text and not comment), "")
     expected = f"no line holds two numbers, a {kind[0]} and a {kind[1]}"
     errors = [(0, InputError(("table",), expected))]
-    for separator, form in _DIALECTS:
-        rows, heading, error = _rows(lines, separator, form)
+    # A table goes on to the last line: the dialects in which that line is a row come first.
+    columns = {dialect: _numbers(_cells(last, dialect[0]), dialect[1]) for dialect in _DIALECTS}
+    for separator, form in sorted(_DIALECTS, key=lambda dialect: not columns[dialect]):
+        rows, heading, error = _rows(lines, separator, form, columns[separator, form])
         if error:
             errors.append((len(rows), error))
         elif rows:
-            titles = _titles(heading, separator, len(rows[0][1]), kind)
+            titles = _titles(heading, separator, max(len(cells) for _, cells in rows), kind)
             return _table(rows, titles, separator, kind)
     # Of the dialects, the one in which most lines are numbers is probably meant.
     raise max(errors[1:] or errors, key=lambda each: each[0])[1]
 
 
-def _content(line: str) -> str:
-    """Return a line without comments, quotes and repeated blanks."""
+def _lines(text: str) -> list[tuple[int, bool, str]]:
+    """Return the number of each line, whether it is a comment, and what it holds.
+
+    Marks of comments, quotes and repeated blanks are left out.
+    """
 
     def unquoted(quoted: re.Match[str]) -> str:
         # A comma within quotes is a decimal comma, or part of a name.
         decimal = re.fullmatch(_COMMA, quoted[1].strip())
         return re.sub("[,;]", "." if decimal else " ", quoted[1])
 
-    text = re.sub(" {2,}", " ", re.sub(f"^{_COMMENT}", "", line.strip(" ")))
-    return re.sub('"([^"]*)"', unquoted, re.sub(r"\s[#!].*", "", text)).strip(" ")
+    for pattern, replaced in _REPLACED:
+        text = re.sub(pattern, replaced, text)
+    lines = re.sub('"([^"\n]*)"', unquoted, text).split("\n")
+    return [
+        (number, line.startswith("#"), line.lstrip("#").strip(" ").rstrip(" \t;,"))
+        for number, line in enumerate(lines, 1)
+    ]
 
 
 def _cells(text: str, separator: str) -> list[str]:
-    # Blanks before a tab are no cell of a table whose columns blanks separate.
-    text = text.replace("\t", " ").strip() if separator == _BLANKS else text
-    return [cell.strip() for cell in re.split(separator, text)]
+    if separator == " ":
+        return text.replace(", ", " ").split()
+    return [cell.strip() for cell in text.split(separator)]
+
+
+def _numbers(cells: Sequence[str], form: re.Pattern[str]) -> list[int]:
+    """Return the indices of two or more numbers; none beside one with another decimal sign."""
+    found = [i for i, cell in enumerate(cells) if form.fullmatch(cell)]
+    if len(found) < len(cells) and any(
+        _NUMBERLIKE.fullmatch(cell) for i, cell in enumerate(cells) if i not in found
+    ):
+        return []
+    return found if len(found) > 1 else []
 
 
 def _rows(
-    lines: Sequence[tuple[int, object, str]], separator: str, form: str
+    lines: Sequence[tuple[int, bool, str]],
+    separator: str,
+    form: re.Pattern[str],
+    columns: list[int],
 ) -> tuple[list[_Row], list[tuple[int, str]], InputError | None]:
     """Return rows of numbers and words, the heading above, and the error at a line that is neither.
 
-    A column of words holds no number in any row, with whatever decimal sign.
+    Parameters
+    ----------
+    columns : indices of the numbers in each row; empty for those in the first row.
     """
     rows: list[_Row] = []
-    heading, numeric = [], list[bool]()
+    heading = []
     for number, comment, text in lines:
-        cells = _cells(text.rstrip(" \t;,"), separator)
-        if separator != _BLANKS:
-            cells += [""] * (len(numeric) - len(cells))
-        found = [bool(re.fullmatch(form, cell)) for cell in cells]
-        looks = [
-            each or bool(re.fullmatch(_NUMBERLIKE, cell))
-            for each, cell in zip(found, cells, strict=True)
-        ]
-        if comment or (not rows and sum(found) < 2 and (found != looks or not found[0])):
+        if comment or not text:
             heading += [] if rows else [(number, text)]
-        elif text and sum(found) > 1 and found == looks and numeric in ([], found):
-            numeric = found
+            continue
+        cells = _cells(text, separator)
+        found = _numbers(cells, form)
+        if found and found == (columns or found):
+            columns = found
             rows.append((number, cells))
-        elif text:
-            count = sum(numeric) or max(len(cells), 2)
+        elif rows or form.fullmatch(cells[0]):
+            count = len(columns) or max(len(cells), 2)
             return rows, heading, _refuse(number, f"{count} numbers are expected")
+        else:
+            heading.append((number, text))
     return rows, heading, None
 
 
@@ -282,9 +314,9 @@ def _table(
     rows: Sequence[_Row], titles: list[Title], separator: str, kind: Sequence[str]
 ) -> ParsedFile:
     first, cells = rows[0]
-    numeric = [i for i, cell in enumerate(cells) if re.fullmatch(_NUMBERLIKE, cell)]
-    whole = all(re.fullmatch(r"[-+]?\d+", cells[i]) for _, cells in rows for i in numeric)
-    if separator == "," and len(cells) > 2 and whole and not any(each.name for each in titles):
+    numeric = [i for i, cell in enumerate(cells) if _NUMBERLIKE.fullmatch(cell)]
+    doubtful = separator == "," and len(cells) > 2 and not any(each.name for each in titles)
+    if doubtful and all(re.fullmatch(r"[-+]?\d+", row[i]) for _, row in rows for i in numeric):
         detail = "a comma may separate columns or decimals; separate columns by ; or tabs"
         raise _refuse(first, detail)
     taken, values = {}, []
@@ -295,13 +327,23 @@ def _table(
         if title.unknown or (title.unit and title.unit[0] != _MEASURES[quantity]):
             unknown = title.unknown or f"the unit {(title.unit or kind)[1]}"
             raise _refuse(title.line, f"{unknown} is none of {_known(quantity)}")
-        numbers = [float(re.sub("[dD]", "e", row[i].replace(",", "."))) for _, row in rows]
-        for (line, _), number in zip(rows, numbers, strict=True):
-            if not isfinite(number) or (is_area and number < 0):
-                raise _refuse(
-                    line, "an area is negative" if number < 0 else "a number is too large"
-                )
-        values.append(np.sqrt(np.array(numbers) / np.pi).tolist() if is_area else numbers)
+        column = " ".join(row[i] for _, row in rows).translate(_DECIMAL)
+        numbers = np.array([float(each) for each in column.split()])
+        for bad, detail in (
+            (~np.isfinite(numbers), "a number is too large"),
+            (numbers < (0 if is_area else -np.inf), "an area is negative"),
+        ):
+            if bad.any():
+                raise _refuse(rows[int(np.argmax(bad))][0], detail)
+        values.append((np.sqrt(numbers / np.pi) if is_area else numbers).tolist())
+    if kind == PROFILE and not any(titles[i].name or titles[i].unit for i in taken):
+        rise = np.ptp(values[1]) / max(np.abs(values[0]).max(), TINY)
+        if rise > _STEEPEST:
+            detail = (
+                f"the second column rises {rise:.3g} times as much as the first: name the columns "
+                "in a line above, as r [mm];f [µm] for a profile or h [nm];A [nm²] for areas"
+            )
+            raise _refuse(first, detail)
     return ParsedFile(titles, taken, values, [line for line, _ in rows])
 
 
@@ -325,9 +367,13 @@ def _titles(
         cells = [
             cell.replace("~", " ") for cell in cells[: count if not any(cells[count:]) else None]
         ]
+        units = [_unit(re.sub(r"[\[\](){}]", "", cell)) for cell in cells]
+        if all(units):
+            # The last columns may have no unit.
+            units += [None] * (count - len(cells))
+            cells += [""] * (count - len(cells))
         if len(cells) != count or any(re.match(r"[-+]?\d", cell) for cell in cells):
             continue
-        units = [_unit(re.sub(r"[\[\](){}]", "", cell)) for cell in cells]
         new = [_title(cell, number) for cell in cells]
         if all(unit or not re.search(r"\w", c) for unit, c in zip(units, cells, strict=True)):
             new = [
@@ -378,7 +424,7 @@ def _places(
     titles: Sequence[Title], numeric: Sequence[int], kind: Sequence[str], line: int
 ) -> list[int]:
     """Return the indices of the two columns, or an InputError that asks for their names."""
-    if len(numeric) == 2 and not any(titles[i].name for i in numeric):
+    if len(numeric) == 2 and kind == PROFILE and not any(titles[i].name for i in numeric):
         return list(numeric)
     places = []
     for quantity in kind:
@@ -394,7 +440,8 @@ def _places(
         places[places.index(-1)] = left[0]
     if -1 in places:
         asked = " and ".join(f"the {quantity} {_HEADS[quantity]}" for quantity in kind)
-        raise _refuse(line, f"{len(titles)} columns; name {asked} in a line above")
+        form = "r [mm];f [µm]" if kind == PROFILE else "d [nm];F [mN]"
+        raise _refuse(line, f"{len(titles)} columns; name {asked} in a line above, as {form}")
     return places
 
 
