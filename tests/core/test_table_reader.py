@@ -301,7 +301,7 @@ FILES = {
         "nm mN",
     ),
     "profilometer": (
-        "Profil Nr 7\nDatum;12.11.2020\nTaststrecke Lt;0,8 mm\nX [mm];Z [µm]\n0,0;0,1\n0,05;0,2\n",
+        "Profil Nr 7\nDatum;12.11.2020\nTaststrecke Lt;0,8 mm\nX [mm];Z [µm]\n0,0;0,1\n0,2;6\n",
         "mm µm",
     ),
     "AFM section": (
