@@ -7,7 +7,8 @@ from time import process_time
 import pytest
 
 from mdr_core import InputError, Tabulated, read_curve, read_table
-from mdr_core.table_reader import CURVE, PROFILE, parse
+from mdr_core.table_headings import CURVE, PROFILE
+from mdr_core.table_reader import parse
 
 TABLES = Path(__file__).parents[1] / "data" / "tables"
 EXPECTED = json.loads((TABLES / "expected.json").read_text("utf-8"))
