@@ -6,6 +6,8 @@ rounded or noisy, on 4 to 200 points; four contact radii are compared for each.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from drawing import GREY, MDR_COLOR, panels, save, table
 from machine import footer
@@ -38,7 +40,7 @@ def main() -> None:
     figure, (axis,) = panels(1, 1, 3.4)
     axis.loglog(count, missed, ".", color=GREY, markersize=2, alpha=0.5, rasterized=True)
     rows = []
-    for first, end in zip(EDGES[:-1], EDGES[1:], strict=True):
+    for first, end in pairwise(EDGES):
         own = (count >= first) & (count < end)
         middles = np.median(missed[own]), np.median(stated[own])
         covered = np.mean(missed[own] <= stated[own])
@@ -50,9 +52,7 @@ def main() -> None:
     axis.set_xlabel("points of the table")
     axis.set_ylabel("error of depth or force")
     axis.legend()
-    axis.set_title(
-        "Points: true errors. The stated error lies above them and falls with the points"
-    )
+    axis.set_title("Points: true errors of random tables; lines: medians")
     save(figure, "tables", footer(), [])
     table(HEADER, rows, "tables")
 
