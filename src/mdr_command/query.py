@@ -19,7 +19,8 @@ from pydantic.fields import FieldInfo
 from mdr_command import ExitStatus
 from mdr_core.errors import InputError
 from mdr_core.profiles.tabulated import tip_points
-from mdr_core.table_reader import CURVE, MeasuredCurve, Points, metres, read_curve, read_table
+from mdr_core.table_headings import CURVE
+from mdr_core.table_reader import MeasuredCurve, Points, metres, read_curve, read_table
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError

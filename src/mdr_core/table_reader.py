@@ -1,63 +1,60 @@
-"""Profiles and curves in files, as instruments and spreadsheets write them.
+"""Profiles and curves in files, as instruments and spreadsheets write them."""
 
-Nothing is guessed: a column is that of a quantity if its unit or its name says so, or if it is the
-only one left of two. What is not understood is an error that names the line and the remedy.
-"""
-
-import json
 import re
 from collections.abc import Sequence
-from importlib.resources import files
-from math import isfinite
 from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
 
+from mdr_core.doubles import TINY
 from mdr_core.errors import InputError
+from mdr_core.table_headings import (
+    CURVE,
+    HEADS,
+    MEASURES,
+    PROFILE,
+    UNITS,
+    Title,
+    cells_of,
+    known_units,
+    places_of,
+    refuse,
+    titles_of,
+    unit_of,
+)
 from mdr_core.typing import Array
 from mdr_core.validation import require_type
 
-_WORDS: Final = json.loads(files("mdr_core").joinpath("table_words.json").read_text("utf-8"))
-# Prefix -> power of ten; unit -> quantity, size in SI units, and whether it takes a prefix.
-_PREFIXES, _UNITS = _WORDS["prefixes"], _WORDS["units"]
-# Names of each quantity, and words beside a name that leave its meaning.
-_NAMES, _NEUTRAL = _WORDS["names"], frozenset(_WORDS["neutral"])
-UNITS: Final = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "nm": 1e-9}
-"""Units of length of results, in metres."""
-PROFILE, CURVE = ("radius", "height"), ("depth", "force")
-_HEADS: Final = {"radius": "r", "height": "f", "depth": "d", "force": "F"}
-_MEASURES: Final = dict.fromkeys(_HEADS, "length") | {"force": "force", "area": "area"}
-# What is left in a name of a factor or a unit that is not understood.
-_MULTIPLIER: Final = (
-    r"/ ?\S|10 ?\^|[x×*] ?10|1e[-+]?\d|(?i:(?<![a-z])(nano|micro|milli|kilo)(?![a-z]))"
-)
 _AREAS: Final = {"area", "a", "section", "areas"}
-_POINT: Final = r"(?ai)[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?"
-_COMMA: Final = r"(?ai)[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?"
-_BLANKS: Final = r",? +"
-# Separator of columns, and the form of a number. Blanks separate numbers with a decimal comma
-# before commas separate columns: `0,5 1,2` holds two numbers.
+_POINT: Final = re.compile(r"(?ai)[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?")
+_COMMA: Final = re.compile(r"(?ai)[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?")
+# Separator of columns, and the form of a number. Blanks, or a comma and a blank, separate numbers
+# with a decimal comma before commas separate columns: `0,5 1,2` holds two numbers.
 _DIALECTS: Final = (
     *((separator, form) for separator in "\t;" for form in (_POINT, _COMMA)),
-    *((_BLANKS, _COMMA), (",", _POINT), (_BLANKS, _POINT)),
+    *((" ", _COMMA), (",", _POINT), (" ", _POINT)),
 )
-_COMMENT: Final = r"\s*(#|%|!|//)+"
-# Words before the names, or the units, of columns in a comment.
-_LABEL: Final = r"(?i)^(fancyNames|columns|headings?|units?)\s*[:=]\s*"
+# Signs of one meaning, marks of comments, comments behind numbers, and repeated blanks.
+_REPLACED: Final = (
+    ("\r\n?", "\n"),
+    ("−", "-"),
+    ("μ", "µ"),
+    ("\xa0", " "),
+    (r"(?m)^[^\S\n]*(#|%|!|//)+", "#"),
+    (r"[^\S\n][#!].*", ""),
+    (" {2,}", " "),
+)
 # Any number, with whatever decimal sign.
-_NUMBERLIKE: Final = r"(?ai)[-+]?[\d.,]*\d[.,]?([ed][-+]?\d+)?"
+_NUMBERLIKE: Final = re.compile(r"(?ai)[-+]?[\d.,]*\d[.,]?([ed][-+]?\d+)?")
+_DECIMAL: Final = str.maketrans(",dD", ".ee")
 # Number of a line, and its cells.
 _Row = tuple[int, list[str]]
 # Bytes of the longest file, some 10^5 points: more take seconds.
 _LARGEST: Final = 4_000_000
-# Characters of the longest heading: tables of instruments have some hundred.
-_LONGEST: Final = 4_000
-_SQUARE: Final = r"(²|\^2|\*\*2|2)$"
-# A number before a unit, such as 10^-6, 1e-6 or x10-6.
-_FACTOR: Final = (
-    r"(?i)[x×*·]?\s*(?:(1|1[.,]0*)?\s*[x×*·]?\s*10(?:\^|\*\*)?\(?([-+]\d+)\)?|1e([-+]?\d+))"
-)
+# Height over radius, as written, above which columns without names may be h and A(h): A(h)/h of a
+# tip in nanometres is in the hundreds, f/r of a ball in micrometres over millimetres is 10.
+_STEEPEST: Final = 30.0
 
 
 class Points(NamedTuple):
@@ -76,17 +73,6 @@ class MeasuredCurve(NamedTuple):
     """Depths in the order of the file [length]."""
     normal_force: Array
     """Forces [force]."""
-
-
-class Title(NamedTuple):
-    """Heading of a column."""
-
-    name: str = ""
-    unit: tuple[str, str, float] | None = None
-    """What it measures, its name, and its size in SI units; of an area those of its root."""
-    unknown: str = ""
-    """What is not understood."""
-    line: int = 0
 
 
 class ParsedFile(NamedTuple):
@@ -108,7 +94,8 @@ def read_table(
 
     The file may have decimal commas, any separator, headings, a row of units, comments, quotes and
     further columns. A column named A or area, in place of the radii, holds the cross-sections A(h)
-    of a tip: the radii are sqrt(A/pi). Two columns without a heading are radii and heights.
+    of a tip: the radii are sqrt(A/pi). Two columns without a heading are radii and heights, unless
+    they are so steep that they may be heights and areas.
 
     Parameters
     ----------
@@ -160,7 +147,7 @@ def read_curve(file: str | Path, units: Sequence[str | None] = (None, None)) -> 
 
 def metres(name: str) -> float:
     """Return a unit of length in metres."""
-    quantity, _, scale = _unit(name) or ("", "", 0.0)
+    quantity, _, scale = unit_of(name) or ("", "", 0.0)
     if quantity == "length":
         return scale
     raise InputError(("length_unit",), f"{name} is none of {', '.join(UNITS)}")
@@ -175,27 +162,18 @@ def _in_units(
     member, lists = ("length_unit" if kind == PROFILE else "units",), []
     columns = zip(table.taken.items(), table.values, given, to, kind, strict=True)
     for (place, _), values, unit, target, wanted in columns:
-        heading, known = table.titles[place].unit, _unit(unit or "")
-        if unit and (not known or known[0] != _MEASURES[wanted]):
-            raise InputError(member, f"{unit} is none of {_known(wanted)}")
+        heading, known = table.titles[place].unit, unit_of(unit or "")
+        if unit and (not known or known[0] != MEASURES[wanted]):
+            raise InputError(member, f"{unit} is none of {known_units(wanted)}")
         if known and heading and known[1:] != heading[1:]:
-            detail = f"is {heading[1]} in the heading of {_HEADS[wanted]}, and not {unit}"
+            detail = f"is {heading[1]} in the heading of {HEADS[wanted]}, and not {unit}"
             raise InputError(member, detail)
         if not (known := known or heading):
-            detail = f"is required: no heading names the unit of {_HEADS[wanted]}"
+            detail = f"is required: no heading names the unit of {HEADS[wanted]}"
             raise InputError(member, detail)
         # The product of a decimal number and a power of ten, without its rounding error.
         lists.append(np.array([float(f"{each * (known[2] / target):.15g}") for each in values]))
     return lists
-
-
-def _known(quantity: str) -> str:
-    units = ["N", "mN", "µN", "nN"] if quantity == "force" else [*UNITS]
-    return ", ".join(f"{unit}²" if quantity == "area" else unit for unit in units)
-
-
-def _refuse(line: int, detail: str) -> InputError:
-    return InputError(("table",), f"Line {line}: {detail}")
 
 
 def _decoded(content: bytes) -> str:
@@ -213,68 +191,81 @@ def _decoded(content: bytes) -> str:
 
 def parse(content: bytes, kind: Sequence[str]) -> ParsedFile:
     """Return the table of a file, a `PROFILE` or a `CURVE`, as it is written, or an InputError."""
-    text = _decoded(content).replace("−", "-").replace("μ", "µ").replace("\xa0", " ")
-    lines = [
-        (number, re.match(_COMMENT, line), _content(line))
-        for number, line in enumerate(re.split(r"\r\n|\r|\n", text), 1)
-    ]
+    lines = _lines(_decoded(content))
+    last = next((text for _, comment, text in reversed(lines) if text and not comment), "")
     expected = f"no line holds two numbers, a {kind[0]} and a {kind[1]}"
     errors = [(0, InputError(("table",), expected))]
-    for separator, form in _DIALECTS:
-        rows, heading, error = _rows(lines, separator, form)
+    # A table goes on to the last line: the dialects in which that line is a row come first.
+    columns = {dialect: _numbers(cells_of(last, dialect[0]), dialect[1]) for dialect in _DIALECTS}
+    for separator, form in sorted(_DIALECTS, key=lambda dialect: not columns[dialect]):
+        rows, heading, error = _rows(lines, separator, form, columns[separator, form])
         if error:
             errors.append((len(rows), error))
         elif rows:
-            titles = _titles(heading, separator, len(rows[0][1]), kind)
+            titles = titles_of(heading, separator, max(len(cells) for _, cells in rows), kind)
             return _table(rows, titles, separator, kind)
     # Of the dialects, the one in which most lines are numbers is probably meant.
     raise max(errors[1:] or errors, key=lambda each: each[0])[1]
 
 
-def _content(line: str) -> str:
-    """Return a line without comments, quotes and repeated blanks."""
+def _lines(text: str) -> list[tuple[int, bool, str]]:
+    """Return the number of each line, whether it is a comment, and what it holds.
+
+    Marks of comments, quotes and repeated blanks are left out.
+    """
 
     def unquoted(quoted: re.Match[str]) -> str:
         # A comma within quotes is a decimal comma, or part of a name.
         decimal = re.fullmatch(_COMMA, quoted[1].strip())
         return re.sub("[,;]", "." if decimal else " ", quoted[1])
 
-    text = re.sub(" {2,}", " ", re.sub(f"^{_COMMENT}", "", line.strip(" ")))
-    return re.sub('"([^"]*)"', unquoted, re.sub(r"\s[#!].*", "", text)).strip(" ")
+    for pattern, replaced in _REPLACED:
+        text = re.sub(pattern, replaced, text)
+    lines = re.sub('"([^"\n]*)"', unquoted, text).split("\n")
+    return [
+        (number, line.startswith("#"), line.lstrip("#").strip(" ").rstrip(" \t;,"))
+        for number, line in enumerate(lines, 1)
+    ]
 
 
-def _cells(text: str, separator: str) -> list[str]:
-    # Blanks before a tab are no cell of a table whose columns blanks separate.
-    text = text.replace("\t", " ").strip() if separator == _BLANKS else text
-    return [cell.strip() for cell in re.split(separator, text)]
+def _numbers(cells: Sequence[str], form: re.Pattern[str]) -> list[int]:
+    """Return the indices of two or more numbers; none beside one with another decimal sign."""
+    found = [i for i, cell in enumerate(cells) if form.fullmatch(cell)]
+    if len(found) < len(cells) and any(
+        _NUMBERLIKE.fullmatch(cell) for i, cell in enumerate(cells) if i not in found
+    ):
+        return []
+    return found if len(found) > 1 else []
 
 
 def _rows(
-    lines: Sequence[tuple[int, object, str]], separator: str, form: str
+    lines: Sequence[tuple[int, bool, str]],
+    separator: str,
+    form: re.Pattern[str],
+    columns: list[int],
 ) -> tuple[list[_Row], list[tuple[int, str]], InputError | None]:
     """Return rows of numbers and words, the heading above, and the error at a line that is neither.
 
-    A column of words holds no number in any row, with whatever decimal sign.
+    Parameters
+    ----------
+    columns : indices of the numbers in each row; empty for those in the first row.
     """
     rows: list[_Row] = []
-    heading, numeric = [], list[bool]()
+    heading = []
     for number, comment, text in lines:
-        cells = _cells(text.rstrip(" \t;,"), separator)
-        if separator != _BLANKS:
-            cells += [""] * (len(numeric) - len(cells))
-        found = [bool(re.fullmatch(form, cell)) for cell in cells]
-        looks = [
-            each or bool(re.fullmatch(_NUMBERLIKE, cell))
-            for each, cell in zip(found, cells, strict=True)
-        ]
-        if comment or (not rows and sum(found) < 2 and (found != looks or not found[0])):
+        if comment or not text:
             heading += [] if rows else [(number, text)]
-        elif text and sum(found) > 1 and found == looks and numeric in ([], found):
-            numeric = found
+            continue
+        cells = cells_of(text, separator)
+        found = _numbers(cells, form)
+        if found and found == (columns or found):
+            columns = found
             rows.append((number, cells))
-        elif text:
-            count = sum(numeric) or max(len(cells), 2)
-            return rows, heading, _refuse(number, f"{count} numbers are expected")
+        elif rows or form.fullmatch(cells[0]):
+            count = len(columns) or max(len(cells), 2)
+            return rows, heading, refuse(number, f"{count} numbers are expected")
+        else:
+            heading.append((number, text))
     return rows, heading, None
 
 
@@ -282,135 +273,34 @@ def _table(
     rows: Sequence[_Row], titles: list[Title], separator: str, kind: Sequence[str]
 ) -> ParsedFile:
     first, cells = rows[0]
-    numeric = [i for i, cell in enumerate(cells) if re.fullmatch(_NUMBERLIKE, cell)]
-    whole = all(re.fullmatch(r"[-+]?\d+", cells[i]) for _, cells in rows for i in numeric)
-    if separator == "," and len(cells) > 2 and whole and not any(each.name for each in titles):
+    numeric = [i for i, cell in enumerate(cells) if _NUMBERLIKE.fullmatch(cell)]
+    doubtful = separator == "," and len(cells) > 2 and not any(each.name for each in titles)
+    if doubtful and all(re.fullmatch(r"[-+]?\d+", row[i]) for _, row in rows for i in numeric):
         detail = "a comma may separate columns or decimals; separate columns by ; or tabs"
-        raise _refuse(first, detail)
+        raise refuse(first, detail)
     taken, values = {}, []
-    for i, wanted in zip(_places(titles, numeric, kind, first), kind, strict=True):
+    for i, wanted in zip(places_of(titles, numeric, kind, first), kind, strict=True):
         title = titles[i]
         is_area = wanted == "radius" and _AREAS & set(re.split(r"[\W\d_]+", title.name.lower()))
         taken[i] = quantity = "area" if is_area else wanted
-        if title.unknown or (title.unit and title.unit[0] != _MEASURES[quantity]):
+        if title.unknown or (title.unit and title.unit[0] != MEASURES[quantity]):
             unknown = title.unknown or f"the unit {(title.unit or kind)[1]}"
-            raise _refuse(title.line, f"{unknown} is none of {_known(quantity)}")
-        numbers = [float(re.sub("[dD]", "e", row[i].replace(",", "."))) for _, row in rows]
-        for (line, _), number in zip(rows, numbers, strict=True):
-            if not isfinite(number) or (is_area and number < 0):
-                raise _refuse(
-                    line, "an area is negative" if number < 0 else "a number is too large"
-                )
-        values.append(np.sqrt(np.array(numbers) / np.pi).tolist() if is_area else numbers)
-    return ParsedFile(titles, taken, values, [line for line, _ in rows])
-
-
-def _titles(
-    heading: Sequence[tuple[int, str]], separator: str, count: int, kind: Sequence[str]
-) -> list[Title]:
-    """Return the titles of the columns: the last line of names, and the units beneath or beside.
-
-    Data of the measurement, such as `Length; 0,8 mm`, name no column; the last line does.
-    """
-    titles, common = [Title()] * count, None
-    for number, text in heading:
-        if len(text) > _LONGEST:
-            continue
-        if found := re.search(r"(?i)\bunits?\b\W*(\S+)\W*$", text):
-            common = _unit(found[1]) or common
-        # A unit stays with its name where blanks separate columns.
-        joined = re.sub(r" (?=[\[({])", "~", re.sub(_LABEL, "", text))
-        joined = re.sub(r"[\[({][^\[\](){}]*[\])}]", lambda b: re.sub("[ ,]", "~", b[0]), joined)
-        cells = _cells(re.sub(r" ?/ ?|(?<=\w) in (?=\w)", "/", joined), separator)
-        cells = [
-            cell.replace("~", " ") for cell in cells[: count if not any(cells[count:]) else None]
-        ]
-        if len(cells) != count or any(re.match(r"[-+]?\d", cell) for cell in cells):
-            continue
-        units = [_unit(re.sub(r"[\[\](){}]", "", cell)) for cell in cells]
-        new = [_title(cell, number) for cell in cells]
-        if all(unit or not re.search(r"\w", c) for unit, c in zip(units, cells, strict=True)):
-            new = [
-                each._replace(name=old.name, unit=unit, unknown="") if unit else old
-                for each, old, unit in zip(new, titles, units, strict=True)
-            ]
-        elif number != heading[-1][0] and not any(
-            each.unit or each.unknown or _rank(each, q) is not None for each in new for q in kind
+            raise refuse(title.line, f"{unknown} is none of {known_units(quantity)}")
+        column = " ".join(row[i] for _, row in rows).translate(_DECIMAL)
+        numbers = np.array([float(each) for each in column.split()])
+        for bad, detail in (
+            (~np.isfinite(numbers), "a number is too large"),
+            (numbers < (0 if is_area else -np.inf), "an area is negative"),
         ):
-            continue
-        titles = [
-            each if each.line and (each.name or each.unit) else old
-            for each, old in zip(new, titles, strict=True)
-        ]
-    return [each if each.unit else each._replace(unit=common) for each in titles]
-
-
-def _title(cell: str, line: int) -> Title:
-    """Return a title: `r [mm]`, `r (10^-6 m)`, `r/mm`, `r, mm`, `load_micro_N` or `A [mm²]`."""
-    name, bracket, inside = re.match(r"([^\[({]*)([\[({]?)([^\])}]*)", cell).groups()  # type: ignore[union-attr]
-    parts = re.split(r"(?<=[^\W\d])[ _]|[/,]", name)
-    # The unit is what follows the name, or a word within it: Defl_nN_Ex.
-    ends = [(i, len(parts)) for i in range(1, len(parts))]
-    ends += [(i, i + 1) for i in range(1, len(parts)) if len(parts[i]) > 1]
-    for i, end in [(len(parts), len(parts))] if bracket else ends:
-        if unit := _unit(inside if bracket else " ".join(parts[i:end])):
-            return Title(" ".join(parts[:i] + parts[end:]).strip(), unit, "", line)
-    unknown = f"the unit {inside.strip()}" if re.search(r"\w", inside) else ""
-    if re.search(_MULTIPLIER, name):
-        unknown = f"the unit or factor in “{name.strip()}”"
-    return Title(name.strip(), None, unknown, line)
-
-
-def _rank(title: Title, quantity: str) -> int | None:
-    """Place of a column among those of a quantity, last if only its unit tells it; None if none."""
-    order, measure = _NAMES[quantity], title.unit and title.unit[0]
-    # A known unit decides, whatever the name.
-    if measure not in {None, _MEASURES[quantity]} and (measure, quantity) != ("area", "radius"):
-        return None
-    words = [w for w in re.split(r"[\W\d_]+", title.name.lower()) if w not in _NEUTRAL]
-    for name in ("".join(re.split(r"[\W\d_]+", title.name.lower())), *words[: len(words) == 1]):
-        if name in order:
-            return order.index(name)
-    return len(order) if measure and quantity in CURVE else None
-
-
-def _places(
-    titles: Sequence[Title], numeric: Sequence[int], kind: Sequence[str], line: int
-) -> list[int]:
-    """Return the indices of the two columns, or an InputError that asks for their names."""
-    if len(numeric) == 2 and not any(titles[i].name for i in numeric):
-        return list(numeric)
-    places = []
-    for quantity in kind:
-        ranks = [(_rank(titles[i], quantity), i) for i in numeric]
-        ranked = sorted((rank, i) for rank, i in ranks if rank is not None)
-        if len(ranked) > 1 and ranked[0][0] == ranked[1][0]:
-            both = " and ".join(titles[i].name for _, i in ranked[:2])
-            raise _refuse(line, f"{both} may each be the {quantity}: name one of them {quantity}")
-        places += [i for _, i in ranked[:1]] or [-1]
-    left = [i for i in numeric if i not in places and not titles[i].unit]
-    if len(numeric) == 2 and left and -1 in places:
-        # The one that is known decides the other.
-        places[places.index(-1)] = left[0]
-    if -1 in places:
-        asked = " and ".join(f"the {quantity} {_HEADS[quantity]}" for quantity in kind)
-        raise _refuse(line, f"{len(titles)} columns; name {asked} in a line above")
-    return places
-
-
-def _unit(text: str) -> tuple[str, str, float] | None:
-    """Return measure, name and size in SI units of a unit with its prefix and power of ten."""
-    text = text.strip().translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
-    factor = re.match(_FACTOR, text)
-    power = int(factor[2] or factor[3]) if factor else 0
-    rest = re.sub(r"^[\s*·x×]+|[\s_-]", "", text[factor.end() :] if factor else text)
-    for prefix, exponent in _PREFIXES.items():
-        name = rest[len(prefix) :]
-        known = _UNITS.get(name) or (_UNITS.get(name.lower()) if name.istitle() else None)
-        if rest.startswith(prefix) and known and (known[2] or not prefix):
-            measure, size, power = known[0], known[1], power + exponent
-            symbol = {"length": "m", "force": "N"}.get(measure, name) if size == 1 else name
-            sign = next((p for p, e in _PREFIXES.items() if e == power), f"10^{power} ")
-            return measure, f"{sign}{symbol}", size * float(f"1e{power}")
-    root = _unit(re.sub(_SQUARE, "", text)) if re.search(_SQUARE, text) else None
-    return ("area", *root[1:]) if root else None
+            if bad.any():
+                raise refuse(rows[int(np.argmax(bad))][0], detail)
+        values.append((np.sqrt(numbers / np.pi) if is_area else numbers).tolist())
+    if kind == PROFILE and not any(titles[i].name or titles[i].unit for i in taken):
+        rise = np.ptp(values[1]) / max(np.abs(values[0]).max(), TINY)
+        if rise > _STEEPEST:
+            detail = (
+                f"the second column rises {rise:.3g} times as much as the first: name the columns "
+                "in a line above, as r [mm];f [µm] for a profile or h [nm];A [nm²] for areas"
+            )
+            raise refuse(first, detail)
+    return ParsedFile(titles, taken, values, [line for line, _ in rows])

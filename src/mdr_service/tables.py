@@ -5,7 +5,8 @@ from typing import Any, Final
 import numpy as np
 
 from mdr_core import residuals
-from mdr_core.table_reader import CURVE, PROFILE, parse
+from mdr_core.table_headings import CURVE, PROFILE
+from mdr_core.table_reader import parse
 from mdr_service.serializers import write_json
 
 KINDS: Final = {"profile": PROFILE, "curve": CURVE}

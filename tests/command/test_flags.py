@@ -5,6 +5,7 @@ import math
 import shlex
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from mdr_command import __main__ as command
@@ -43,7 +44,7 @@ FIT_OPTIONS = ["--kind", "paraboloid", "--radius", "5e-6", "--fit", "e_star,cont
 
 @pytest.mark.parametrize(
     ("heading", "units"),
-    [("depth [nm];load [µN]\n", []), ("", ["--curve-units", "nm,uN"])],
+    [("depth [nm];load [µN]\n", []), ("d;F\n", ["--curve-units", "nm,uN"])],
     ids=["units of the headings", "units of the option"],
 )
 def test_a_curve_in_a_file_gives_the_bytes_of_the_request(
@@ -63,8 +64,12 @@ def test_a_curve_in_a_file_gives_the_bytes_of_the_request(
 @pytest.mark.parametrize(
     ("text", "given", "message"),
     [
-        ("0;0\n1;1\n2;3\n3;5\n", [], "--curve-units: is required: no heading names"),
-        ("0;0\n1;1\n2;3\n", ["--curve-units", "nm"], "--curve-units: gives the units of depth"),
+        ("d;F\n0;0\n1;1\n2;3\n3;5\n", [], "--curve-units: is required: no heading names"),
+        (
+            "d;F\n0;0\n1;1\n2;3\n",
+            ["--curve-units", "nm"],
+            "--curve-units: gives the units of depth",
+        ),
         ("d [nm];F [N]\n0;0\nx;1\n2;3\n", [], "Line 3"),
         ("d [nm];F [N]\n0;0\n1;1\n2;3\n", ["--fit", "contact_point"], "--e-star: is needed"),
     ],
@@ -188,3 +193,19 @@ def test_errors_name_the_table_or_the_option(
 def test_an_endless_table_is_refused(capsys: Capture) -> None:
     assert main(["normal", "--table", "/dev/zero", *LOAD]) == 2
     assert "longer than 4000000 bytes" in capsys.readouterr().err
+
+
+def test_table_of_too_many_points_is_thinned_without_a_change_of_the_fit(
+    tmp_path: Path, capsys: Capture
+) -> None:
+    # A ball of radius 10 mm: F_N = (4/3) E* R^(1/2) d^(3/2).
+    file, r = tmp_path / "ball.csv", np.linspace(0, 1e-3, 2600)
+    rows = "".join(f"{x:.17g};{x * x / 0.02:.17g}\n" for x in r.tolist())
+    file.write_text("r [m];f [m]\n" + rows, "utf-8")
+    given = ["--e-star", "1e11", "--normal-force", "100", "--format", "json"]
+    assert main(["normal", "--table", str(file), *given]) == 0
+    captured = capsys.readouterr()
+    assert "2600 points, of which 2000 are used" in captured.err
+    (depth,) = json.loads(captured.out)["indentation_depth"]
+    expected = (100 / (4 / 3 * 1e11 * 0.1)) ** (2 / 3)
+    assert depth == pytest.approx(expected, rel=1e-9, abs=0)

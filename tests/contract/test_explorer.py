@@ -243,7 +243,9 @@ def test_units_of_a_pasted_table_are_those_of_its_heading(visit: Visit) -> None:
     visit.page.select_option("#unit-r", "mm")
     visit.page.locator("#warnings").get_by_text("check the units of the table").wait_for()
     assert visit.page.input_value("#table").startswith("r [mm], f [nm]\n0, 0\n10000, 5\n")
-    pasted(visit, "\n".join(f"{r:.6g} {f * 1e3:.6g}" for r, f in points))
+    with visit.changing():
+        visit.page.select_option("#unit-f", "µm")
+    pasted(visit, "\n".join(f"{r:.6g} {f:.6g}" for r, f in points))
     note.get_by_text("choose them above").wait_for()
     assert visit.number("Contact radius a").startswith("0.186")
 

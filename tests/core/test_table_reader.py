@@ -7,6 +7,8 @@ from time import process_time
 import pytest
 
 from mdr_core import InputError, Tabulated, read_curve, read_table
+from mdr_core.table_headings import CURVE, PROFILE
+from mdr_core.table_reader import parse
 
 TABLES = Path(__file__).parents[1] / "data" / "tables"
 EXPECTED = json.loads((TABLES / "expected.json").read_text("utf-8"))
@@ -187,4 +189,176 @@ def test_long_lines_take_linear_time(tmp_path: Path, line: str) -> None:
     file.write_text(f"{line}\n# {line}\nd [m];F [N]\n0;0\n1;2\n", "utf-8")
     begin = process_time()
     assert read_curve(file).normal_force.tolist() == [0, 2]
+    assert process_time() - begin < 2
+
+
+#: Own imitations of the files of makers: text and units; each ends with 0.2 and 6.
+FILES = {
+    "Hysitron": (
+        (
+            "Test 12\n"
+            "\n"
+            "Peak Load: 1000 µN\tMax depth 120 nm\n"
+            "Number of Points = 3\n"
+            "\n"
+            "Depth (nm)\tLoad (µN)\tTime (s)\tDepth (V)\tLoad (V)\n"
+            "0.1\t5\t0\t0.001\t0.1\n"
+            "0.2\t6\t0.005\t0.002\t0.2\n"
+        ),
+        "nm µN",
+    ),
+    "Anton Paar": (
+        (
+            "Indentation 1\n"
+            "Date: 12/11/2020 10:15\n"
+            "Max load: 10 mN\n"
+            "Loading rate: 20 mN/min\n"
+            "\n"
+            "Time [s]\tPd [nm]\tFn [mN]\n"
+            "0.000\t0.1\t5\n"
+            "0.100\t0.2\t6\n"
+        ),
+        "nm mN",
+    ),
+    "MTS": (
+        (
+            "Sample,Fused silica,,\n"
+            "Date 2020 11 12\n"
+            "Displacement Into Surface,Load On Sample,Time On Sample,Segment Type\n"
+            "nm,mN,s,\n"
+            "0.1,5,0,Load\n"
+            "0.2,6,1,Load\n"
+        ),
+        "nm mN",
+    ),
+    "Instron": (
+        (
+            '"Specimen label","A 1"\n'
+            '"Maximum Load","12.5","N"\n'
+            "\n"
+            '"Time","Extension","Load"\n'
+            '"(s)","(mm)","(N)"\n'
+            '"0.0","0.1","5"\n'
+            '"0.1","0.2","6"\n'
+        ),
+        "mm N",
+    ),
+    "Zwick": (
+        (
+            "Prüfdatum;12.11.2020\n"
+            "Vorkraft;0,5;N\n"
+            "Prüfgeschwindigkeit;10;mm/min\n"
+            "Prüfzeit;Standardweg;Standardkraft\n"
+            "s;mm;N\n"
+            "0,0;0,1;5,0\n"
+            "0,1;0,2;6,0\n"
+        ),
+        "mm N",
+    ),
+    "JPK": (
+        (
+            "# xPosition: 1.2e-5\n"
+            "# k: 0.045 N/m\n"
+            "# columns: height vDeflection smoothedHeight\n"
+            "# units: m N m\n"
+            "0.1 5 0.1\n"
+            "0.2 6 0.2\n"
+        ),
+        "m N",
+    ),
+    "texture analyser": (
+        (
+            "Test ID,gel 3\n"
+            "Trigger force 5 g 2 s\n"
+            "Force (N),Distance (mm),Time (sec)\n"
+            "5,0.1,0.0\n"
+            "6,0.2,0.005\n"
+        ),
+        "mm N",
+    ),
+    "Shimadzu": (
+        (
+            '"Key Word","Date 2020 11 12"\n'
+            '"Speed",1,2\n'
+            "Time,Force,Stroke\n"
+            "sec,N,mm\n"
+            "0,5,0.1\n"
+            "0.01,6,0.2\n"
+        ),
+        "mm N",
+    ),
+    "KLA": (
+        (
+            "Run 3 5 7\n"
+            "DEPTH\tLOAD\tSTIFFNESS\tMODULUS\n"
+            "nm\tmN\tN/m\tGPa\n"
+            "0.1\t5\t300\t72\n"
+            "0.2\t6\t310\t73\n"
+        ),
+        "nm mN",
+    ),
+    "blanks": (
+        "Date 2020 11 12\nOperator A B\nMax load: 10 mN\ndepth_nm load_mN\n0.1 5\n0.2 6\n",
+        "nm mN",
+    ),
+    "profilometer": (
+        "Profil Nr 7\nDatum;12.11.2020\nTaststrecke Lt;0,8 mm\nX [mm];Z [µm]\n0,0;0,1\n0,2;6\n",
+        "mm µm",
+    ),
+    "AFM section": (
+        "Channel: Height\nScan size 500 500 nm\nx\tz\nnm\tnm\n0.1\t5\n0.2\t6\n",
+        "nm nm",
+    ),
+    "French": (
+        (
+            "Essai n° 4\n"
+            "Date\t12/11/2020\n"
+            "Charge max.\t500 mN\n"
+            "Enfoncement (µm)\tCharge (mN)\n"
+            "0,1\t5\n"
+            "0,2\t6\n"
+        ),
+        "µm mN",
+    ),
+}
+
+
+@pytest.mark.parametrize("maker", FILES)
+def test_measurement_data_above_a_table_are_no_rows_and_no_names(maker: str) -> None:
+    text, units = FILES[maker]
+    kind = PROFILE if maker in {"profilometer", "AFM section"} else CURVE
+    table = parse(text.encode(), kind)
+    assert [(table.titles[i].unit or ("", ""))[1] for i in table.taken] == units.split()
+    assert [values[-1] for values in table.values] == [0.2, 6.0]
+    assert table.lines[-1] == text.count("\n")
+
+
+def test_first_point_with_whole_numbers_is_not_lost() -> None:
+    table = parse(b"d;F\n0;0,5\n1;1\n", CURVE)
+    assert table.values == [[0.0, 1.0], [0.5, 1.0]]
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "detail"),
+    [
+        ("0 0\n10 30\n20 90", CURVE, "name the depth d and the force F .* d .nm.;F .mN."),
+        ("0 0\n10 3000\n20 12000", PROFILE, "rises 600 times as much as the first"),
+        ("h A\n0 0\n10 3000", PROFILE, None),
+        ("0 0\n10 1\n20 4", PROFILE, None),
+    ],
+)
+def test_columns_without_names_are_asked_for(
+    text: str, kind: tuple[str, str], detail: str | None
+) -> None:
+    if detail is None:
+        assert parse(text.encode(), kind).values[1][0] == 0
+        return
+    with pytest.raises(InputError, match=f"Line 1: .*{detail}"):
+        parse(text.encode(), kind)
+
+
+def test_file_of_four_megabytes() -> None:
+    rows = "".join(f"{i * 1e-6:.6e},{i * i * 1e-12:.6e}\n" for i in range(150_000))
+    begin = process_time()
+    assert len(parse(f"d [m],F [N]\n{rows}".encode(), CURVE).lines) == 150_000
     assert process_time() - begin < 2

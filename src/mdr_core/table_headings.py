@@ -1,0 +1,182 @@
+"""Names and units of the columns of a file.
+
+Nothing is guessed: a column is that of a quantity if its unit or its name says so, or if it is the
+only one left of two. What is not understood is an error that names the line and the remedy.
+"""
+
+import json
+import re
+from collections.abc import Sequence
+from importlib.resources import files
+from typing import Final, NamedTuple
+
+from mdr_core.errors import InputError
+
+_WORDS: Final = json.loads(files("mdr_core").joinpath("table_words.json").read_text("utf-8"))
+# Prefix -> power of ten; unit -> quantity, size in SI units, and whether it takes a prefix.
+_PREFIXES, _UNITS = _WORDS["prefixes"], _WORDS["units"]
+# Names of each quantity, and words beside a name that leave its meaning.
+_NAMES, _NEUTRAL = _WORDS["names"], frozenset(_WORDS["neutral"])
+UNITS: Final = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "nm": 1e-9}
+"""Units of length of results, in metres."""
+PROFILE, CURVE = ("radius", "height"), ("depth", "force")
+HEADS: Final = {"radius": "r", "height": "f", "depth": "d", "force": "F"}
+MEASURES: Final = dict.fromkeys(HEADS, "length") | {"force": "force", "area": "area"}
+# What is left in a name of a factor or a unit that is not understood.
+_MULTIPLIER: Final = (
+    r"/ ?\S|10 ?\^|[x×*] ?10|1e[-+]?\d|(?i:(?<![a-z])(nano|micro|milli|kilo)(?![a-z]))"
+)
+# Words before the names, or the units, of columns in a comment.
+_LABEL: Final = r"(?i)^(fancyNames|columns|headings?|units?)\s*[:=]\s*"
+# Characters of the longest heading: tables of instruments have some hundred.
+_LONGEST: Final = 4_000
+_SQUARE: Final = r"(²|\^2|\*\*2|2)$"
+# A number before a unit, such as 10^-6, 1e-6 or x10-6.
+_FACTOR: Final = (
+    r"(?i)[x×*·]?\s*(?:(1|1[.,]0*)?\s*[x×*·]?\s*10(?:\^|\*\*)?\(?([-+]\d+)\)?|1e([-+]?\d+))"
+)
+
+
+class Title(NamedTuple):
+    """Heading of a column."""
+
+    name: str = ""
+    unit: tuple[str, str, float] | None = None
+    """What it measures, its name, and its size in SI units; of an area those of its root."""
+    unknown: str = ""
+    """What is not understood."""
+    line: int = 0
+
+
+def known_units(quantity: str) -> str:
+    """Return the units of a quantity that an error names."""
+    units = ["N", "mN", "µN", "nN"] if quantity == "force" else [*UNITS]
+    return ", ".join(f"{unit}²" if quantity == "area" else unit for unit in units)
+
+
+def refuse(line: int, detail: str) -> InputError:
+    """Return the error at a line of the file."""
+    return InputError(("table",), f"Line {line}: {detail}")
+
+
+def cells_of(text: str, separator: str) -> list[str]:
+    """Return the cells of a line; a blank separates as a comma and a blank do."""
+    if separator == " ":
+        return text.replace(", ", " ").split()
+    return [cell.strip() for cell in text.split(separator)]
+
+
+def titles_of(
+    heading: Sequence[tuple[int, str]], separator: str, count: int, kind: Sequence[str]
+) -> list[Title]:
+    """Return the titles of the columns: the last line of names, and the units beneath or beside.
+
+    Data of the measurement, such as `Length; 0,8 mm`, name no column; the last line does.
+    """
+    titles, common = [Title()] * count, None
+    for number, text in heading:
+        if len(text) > _LONGEST:
+            continue
+        if found := re.search(r"(?i)\bunits?\b\W*(\S+)\W*$", text):
+            common = unit_of(found[1]) or common
+        # A unit stays with its name where blanks separate columns.
+        joined = re.sub(r" (?=[\[({])", "~", re.sub(_LABEL, "", text))
+        joined = re.sub(r"[\[({][^\[\](){}]*[\])}]", lambda b: re.sub("[ ,]", "~", b[0]), joined)
+        cells = cells_of(re.sub(r" ?/ ?|(?<=\w) in (?=\w)", "/", joined), separator)
+        cells = [
+            cell.replace("~", " ") for cell in cells[: count if not any(cells[count:]) else None]
+        ]
+        units = [unit_of(re.sub(r"[\[\](){}]", "", cell)) for cell in cells]
+        if all(units):
+            # The last columns may have no unit.
+            units += [None] * (count - len(cells))
+            cells += [""] * (count - len(cells))
+        if len(cells) != count or any(re.match(r"[-+]?\d", cell) for cell in cells):
+            continue
+        new = [_title(cell, number) for cell in cells]
+        if all(unit or not re.search(r"\w", c) for unit, c in zip(units, cells, strict=True)):
+            new = [
+                each._replace(name=old.name, unit=unit, unknown="") if unit else old
+                for each, old, unit in zip(new, titles, units, strict=True)
+            ]
+        elif number != heading[-1][0] and not any(
+            each.unit or each.unknown or _rank(each, q) is not None for each in new for q in kind
+        ):
+            continue
+        titles = [
+            each if each.line and (each.name or each.unit) else old
+            for each, old in zip(new, titles, strict=True)
+        ]
+    return [each if each.unit else each._replace(unit=common) for each in titles]
+
+
+def _title(cell: str, line: int) -> Title:
+    """Return a title: `r [mm]`, `r (10^-6 m)`, `r/mm`, `r, mm`, `load_micro_N` or `A [mm²]`."""
+    name, bracket, inside = re.match(r"([^\[({]*)([\[({]?)([^\])}]*)", cell).groups()  # type: ignore[union-attr]
+    parts = re.split(r"(?<=[^\W\d])[ _]|[/,]", name)
+    # The unit is what follows the name, or a word within it: Defl_nN_Ex.
+    ends = [(i, len(parts)) for i in range(1, len(parts))]
+    ends += [(i, i + 1) for i in range(1, len(parts)) if len(parts[i]) > 1]
+    for i, end in [(len(parts), len(parts))] if bracket else ends:
+        if unit := unit_of(inside if bracket else " ".join(parts[i:end])):
+            return Title(" ".join(parts[:i] + parts[end:]).strip(), unit, "", line)
+    unknown = f"the unit {inside.strip()}" if re.search(r"\w", inside) else ""
+    if re.search(_MULTIPLIER, name):
+        unknown = f"the unit or factor in “{name.strip()}”"
+    return Title(name.strip(), None, unknown, line)
+
+
+def _rank(title: Title, quantity: str) -> int | None:
+    """Place of a column among those of a quantity, last if only its unit tells it; None if none."""
+    order, measure = _NAMES[quantity], title.unit and title.unit[0]
+    # A known unit decides, whatever the name.
+    if measure not in {None, MEASURES[quantity]} and (measure, quantity) != ("area", "radius"):
+        return None
+    words = [w for w in re.split(r"[\W\d_]+", title.name.lower()) if w not in _NEUTRAL]
+    for name in ("".join(re.split(r"[\W\d_]+", title.name.lower())), *words[: len(words) == 1]):
+        if name in order:
+            return order.index(name)
+    return len(order) if measure and quantity in CURVE else None
+
+
+def places_of(
+    titles: Sequence[Title], numeric: Sequence[int], kind: Sequence[str], line: int
+) -> list[int]:
+    """Return the indices of the two columns, or an InputError that asks for their names."""
+    if len(numeric) == 2 and kind == PROFILE and not any(titles[i].name for i in numeric):
+        return list(numeric)
+    places = []
+    for quantity in kind:
+        ranks = [(_rank(titles[i], quantity), i) for i in numeric]
+        ranked = sorted((rank, i) for rank, i in ranks if rank is not None)
+        if len(ranked) > 1 and ranked[0][0] == ranked[1][0]:
+            both = " and ".join(titles[i].name for _, i in ranked[:2])
+            raise refuse(line, f"{both} may each be the {quantity}: name one of them {quantity}")
+        places += [i for _, i in ranked[:1]] or [-1]
+    left = [i for i in numeric if i not in places and not titles[i].unit]
+    if len(numeric) == 2 and left and -1 in places:
+        # The one that is known decides the other.
+        places[places.index(-1)] = left[0]
+    if -1 in places:
+        asked = " and ".join(f"the {quantity} {HEADS[quantity]}" for quantity in kind)
+        form = "r [mm];f [µm]" if kind == PROFILE else "d [nm];F [mN]"
+        raise refuse(line, f"{len(titles)} columns; name {asked} in a line above, as {form}")
+    return places
+
+
+def unit_of(text: str) -> tuple[str, str, float] | None:
+    """Return measure, name and size in SI units of a unit with its prefix and power of ten."""
+    text = text.strip().translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
+    factor = re.match(_FACTOR, text)
+    power = int(factor[2] or factor[3]) if factor else 0
+    rest = re.sub(r"^[\s*·x×]+|[\s_-]", "", text[factor.end() :] if factor else text)
+    for prefix, exponent in _PREFIXES.items():
+        name = rest[len(prefix) :]
+        known = _UNITS.get(name) or (_UNITS.get(name.lower()) if name.istitle() else None)
+        if rest.startswith(prefix) and known and (known[2] or not prefix):
+            measure, size, power = known[0], known[1], power + exponent
+            symbol = {"length": "m", "force": "N"}.get(measure, name) if size == 1 else name
+            sign = next((p for p, e in _PREFIXES.items() if e == power), f"10^{power} ")
+            return measure, f"{sign}{symbol}", size * float(f"1e{power}")
+    root = unit_of(re.sub(_SQUARE, "", text)) if re.search(_SQUARE, text) else None
+    return ("area", *root[1:]) if root else None
