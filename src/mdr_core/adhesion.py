@@ -242,14 +242,15 @@ class AdhesiveContact(NormalContact):
     def normal_stiffness(self) -> Array:
         """dF_N/dd = 2 E* [a - Delta_l/(g' - Delta_l/(2a))] [force/length].
 
-        -inf at pull-off under a prescribed depth; 2 E* a on a flat punch, whose edge is fixed.
+        -inf at pull-off under a prescribed depth; 2 E* a on a flat punch, whose edge is fixed, and
+        at the edge of a flat at which g' is infinite.
         """
-        punch = self.reference.normal_stiffness
+        punch, stable = self.reference.normal_stiffness, self._excess("indentation_depth")
         if self.profile.is_flat_punch:
             return punch
         excess = self.curve.excess(_SHARES["normal_force"], self.coordinate)
-        with np.errstate(divide="ignore"):
-            return punch * excess / self._excess("indentation_depth")
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return where(stable < inf, punch * excess / stable, punch)
 
     def _excess(self, name: str) -> Array:
         """Excess of a g'/Delta_l over its value at pull-off; infinite under a flat punch [1]."""
@@ -304,8 +305,23 @@ class AdhesiveContact(NormalContact):
         """
         change = 3 * self.profile.steepness * self.edge_errors
         stable = self._excess("indentation_depth")
-        near = 2 + where(stable > 0, 1 / where(stable > 0, stable, 1.0), 0.0)
-        return (self.reference.error_estimates + change) * near
+        near = where(stable > 0, 1 / where(stable > 0, stable, 1.0), 0.0)
+        own = (self.reference.error_estimates + change) * (2 + near)
+        return own + near * self._slope_error
+
+    @property
+    def _slope_error(self) -> Array:
+        """Relative error of g'(a) by the error of the contact radius, large next to a flat [1]."""
+        profile, edge = self.profile, self.coordinate
+        if profile.is_flat_punch:
+            return full(0.0, edge)
+        size = edge if self.control == "contact_radius" else self.contact_radius
+        moved = np.minimum(self.edge_errors * size, edge / 2)
+        with np.errstate(all="ignore"):
+            slope = profile.depth_slope(edge)
+            ends = edge - moved, np.minimum(edge + moved, self.curve.end)
+            changes = [np.abs(profile.depth_slope(end) / slope - 1) for end in ends]
+        return where(slope < inf, np.maximum(*changes), 0.0)
 
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:

@@ -398,13 +398,10 @@ def _rebound(scene: _Scene, motion: _Motion, guess: Array) -> tuple[_Rebound, Ar
 
 def _difference(scene: _Scene, coarse: _Rebound, fine: _Rebound) -> float:
     """Return the largest difference between two results, relative to the scale of each quantity."""
-    duration = abs(coarse.duration / fine.duration - 1)
     largest = _largest_velocity(scene, fine)
-    if not largest:
-        return duration
     energy = scene.tangential_mass * largest**2 / 2
     return max(
-        duration,
+        abs(coarse.duration / fine.duration - 1),
         abs(coarse.velocity - fine.velocity) / largest,
         abs(coarse.dissipated - fine.dissipated) / energy,
     )
@@ -413,13 +410,11 @@ def _difference(scene: _Scene, coarse: _Rebound, fine: _Rebound) -> float:
 def _imbalance(scene: _Scene, result: _Rebound) -> float:
     """Return the relative difference between the work of friction and the loss of energy."""
     before, after = scene.tangential_velocity, result.velocity
-    largest, mass = _largest_velocity(scene, result), scene.tangential_mass
-    if not largest:
-        return 0.0
     lost = (before - after) * (before + after)
-    return abs(lost - 2 * result.dissipated / mass) / largest**2
+    work = 2 * result.dissipated / scene.tangential_mass
+    return abs(lost - work) / _largest_velocity(scene, result) ** 2
 
 
 def _largest_velocity(scene: _Scene, result: _Rebound) -> float:
-    """Return the larger tangential velocity, before or after the impact [length/time]."""
-    return max(abs(scene.tangential_velocity), abs(result.velocity))
+    """Return the larger tangential velocity, before or after the impact; 1 at rest."""
+    return max(abs(scene.tangential_velocity), abs(result.velocity)) or 1.0

@@ -43,7 +43,7 @@ _PLACES: Final = (0.3, 0.6, 0.9)
 
 
 @dataclass(frozen=True, repr=False)
-class NormalContact(validity.ContactResults):
+class NormalContact(validity.ResultsOverLoads):
     """Profile pressed into a half-space, under any number of loads.
 
     Results are arrays over the loads and the cases of a sweep, without dimension if the load is a
@@ -215,16 +215,6 @@ class NormalContact(validity.ContactResults):
             return 0.0
         is_exact = not self.profile.flattens and self.control != "maximum_pressure"
         return ROUNDING if is_exact else self.error_estimates
-
-    @property
-    def error_estimate(self) -> float:
-        """Largest of `error_estimates` [1]."""
-        return extremes(self.error_estimates)[1]
-
-    @property
-    def warnings_without_bodies(self) -> tuple[Notice, ...]:
-        """Warnings that do not depend on the bodies."""
-        return self.warnings_with(self.error_estimate)
 
     def warnings_with(self, error: float, limit: float = ACCURACY) -> tuple[Notice, ...]:
         """Return the warnings about profile and loads, and about an error above a limit."""

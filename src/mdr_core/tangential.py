@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from mdr_core import conditioning, equivalent_1d, stick_zone, validity
 from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.elementwise import broadcast, is_number, some, where
-from mdr_core.errors import Notice
 from mdr_core.extrema import largest_stress
 from mdr_core.interval_moments import interval_moments
 from mdr_core.materials import Material, shear_modulus
@@ -19,7 +18,7 @@ from mdr_core.normal import NormalContact, shape_of_loads
 from mdr_core.profiles import Profile
 from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validation import extremes, only_one, require_positive, require_type
+from mdr_core.validation import only_one, require_positive, require_type
 
 # Relative rounding error of the full-slip displacement mu (E*/G*) d, which has three products.
 _LIMIT_ERROR: Final = 1.5 * EPS
@@ -32,7 +31,7 @@ _Step = Callable[[Profile, Array, Array, Array], Array]
 
 
 @dataclass(frozen=True, repr=False)
-class TangentialContact(validity.ContactResults):
+class TangentialContact(validity.ResultsOverLoads):
     """Normal contact under a tangential load, at any number of pairs of loads.
 
     Results are arrays over the broadcast loads. Each is computed on first use.
@@ -246,11 +245,6 @@ class TangentialContact(validity.ContactResults):
         return self.step_error + self._limit_rounding
 
     @property
-    def error_estimate(self) -> float:
-        """Largest of `error_estimates` [1]."""
-        return extremes(self.error_estimates)[1]
-
-    @property
     def _load_and_limit(self) -> tuple[Array, Array]:
         """Magnitude of the prescribed load and of the full-slip load."""
         if self.control == "tangential_force":
@@ -277,11 +271,6 @@ class TangentialContact(validity.ContactResults):
     def slips_from(self) -> Array:
         """Least radius with slip [length]; infinite without slip."""
         return where(self.full_slip | (self.slip_width > 0), self.stick_radius, np.inf)
-
-    @property
-    def warnings_without_bodies(self) -> tuple[Notice, ...]:
-        """Warnings that do not depend on the bodies."""
-        return self.normal.warnings_with(self.error_estimate)
 
 
 def solve(

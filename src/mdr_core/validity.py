@@ -11,7 +11,7 @@ import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from importlib.resources import files
-from typing import ClassVar, Final, NamedTuple, Protocol
+from typing import Any, ClassVar, Final, NamedTuple, Protocol
 
 import numpy as np
 
@@ -140,6 +140,21 @@ class ContactResults(Results):
     def model_error_pressure(self: SolvedContact) -> Array | None:
         """Estimated error of the pressure under a force [1]; None but of round bodies."""
         return _at_most_1(self.solved.normal.half_space_errors.pressure)
+
+
+class ResultsOverLoads(ContactResults):
+    """Results of a contact under each of many loads, with an `error_estimates` over them."""
+
+    @property
+    def error_estimate(self: Any) -> float:
+        """Largest of `error_estimates` [1]."""
+        return extremes(self.error_estimates)[1]
+
+    @property
+    def warnings_without_bodies(self: Any) -> tuple[Notice, ...]:
+        """Warnings that do not depend on the bodies."""
+        found: tuple[Notice, ...] = self.normal.warnings_with(self.error_estimate)
+        return found
 
 
 def _at_most_1(error: Array | None) -> Array | None:

@@ -114,6 +114,54 @@ def test_stiffness_is_the_slope_of_force_over_depth(profile: Profile) -> None:
     assert close(contact.normal_stiffness, slope, 1e-7)
 
 
+@pytest.mark.parametrize("control", ["normal_force", "indentation_depth"])
+@pytest.mark.parametrize("beyond", [1e-12, 1e-9, 1e-6, 1e-3])
+@pytest.mark.parametrize(("rounding", "work"), [(0.0143, 3.61e-8), (1.0, 1e-6), (1.0, 1e-3)])
+def test_error_estimate_contains_the_stiffness_next_to_a_flat(
+    rounding: float, work: float, beyond: float, control: str
+) -> None:
+    punch = mdr.RoundedPunch(1.0, rounding)
+    curve = adhesion.Curve(punch, float(np.sqrt(2 * np.pi) * np.sqrt(work)))
+    load = curve.least[control] * (1 - beyond)
+    contact = adhesion.solve(punch, 1.0, work, **{control: load})
+    with mp.workdps(50):
+        c = mp.sqrt(2 * mp.pi * mpf(work))
+
+        def edge(e: Any) -> tuple[Any, Any, Any]:
+            """Retraction, sqrt(a^2 - b^2) and arccos(b/a) at a = 1 + e."""
+            s = mp.sqrt(e * (2 + e))
+            return c * mp.sqrt(1 + e), s, mp.atan(s)
+
+        def excess(e: Any) -> Any:
+            (step, s, phi), a = edge(e), 1 + e
+            if control == "indentation_depth":
+                return a * (s - phi) / rounding - step - mpf(load)
+            force = ((4 * a * a - 1) * s - 3 * a * a * phi) / (3 * mpf(rounding))
+            return force - 2 * a * step - mpf(load)
+
+        # The outer one of the two roots lies beyond the pull-off.
+        ends = mpf(float(curve.stable[control][0][0])), mpf(10)
+        e = mp.findroot(excess, ends, solver="bisect", maxsteps=150, verify=False)
+        (step, s, phi), a = edge(e), 1 + e
+        softer = step / ((2 * s - phi) / mpf(rounding) - step / (2 * a))
+        expected, size = 2 * (a - softer), 2 * (a + abs(softer))
+    error = abs(float(contact.normal_stiffness) - float(expected)) / float(size)
+    assert error <= float(contact.error_estimates)
+
+
+@pytest.mark.parametrize("share", [1.0, 1 - 1e-15, 1 - 1e-12])
+@pytest.mark.parametrize("control", ["normal_force", "indentation_depth"])
+@pytest.mark.parametrize(
+    "profile", [mdr.TruncatedCone(2.0, 0.1), mdr.TruncatedParaboloid(2.0, 1.0)]
+)
+def test_edge_of_a_sharp_flat_has_the_stiffness_of_its_punch(
+    profile: Profile, control: str, share: float
+) -> None:
+    least = adhesion.Curve(profile, float(np.sqrt(2 * np.pi * 1e-6))).least[control]
+    contact = adhesion.solve(profile, 1.0, 1e-6, **{control: share * least})
+    assert close(contact.normal_stiffness, 4.0)
+
+
 @pytest.mark.parametrize("profile", EACH_KIND, ids=lambda profile: profile.kind)
 def test_controls_return_one_another(profile: Profile) -> None:
     first = adhesion.solve(profile, 2.0, 0.01, normal_force=np.linspace(-0.005, 0.3, 7))

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from mdr_core.doubles import ROUNDING
-from mdr_core.elementwise import number
+from mdr_core.elementwise import number, where
 from mdr_core.history import slip_memory
 from mdr_core.history.slip_layout import NORMAL
 from mdr_core.history.slip_memory import Polyline, VertexTree, read_only
@@ -39,8 +39,62 @@ class Edge(NamedTuple):
     """F_x/(mu E*) [length^2]."""
 
 
+class LoadPointResults(Results):
+    """Results of one contact or of many, from the contacts whose edges the load points are."""
+
+    profile: Profile
+    e_star: Any
+    g_star: Any
+    friction_coefficient: Any
+    in_contact: Any
+    load_points: Any
+    """`Edge` of the load points."""
+    quantities: ClassVar[tuple[str, ...]] = (
+        "indentation_depth",
+        "normal_force",
+        "contact_radius",
+        "tangential_displacement",
+        "tangential_force",
+        "elastic_energy",
+        "tangential_energy",
+        "dissipation",
+    )
+    about: ClassVar[tuple[str, ...]] = ()
+
+    @property
+    def displacement_ratio(self) -> Any:
+        """mu E*/G* [1], the ratio of a tangential displacement to its reduced value U."""
+        return self.friction_coefficient * self.e_star / self.g_star
+
+    @property
+    def energy_unit(self) -> Any:
+        """(mu E*)^2/G* [pressure]."""
+        return self.friction_coefficient * self.e_star * self.displacement_ratio
+
+    @property
+    def contact_radius(self) -> Array:
+        """a [length]; zero in separation."""
+        radius = self.profile.contact_radius(self.load_points.coordinate)
+        return where(self.in_contact, radius, 0.0)
+
+    @property
+    def normal_force(self) -> Array:
+        """F_N [force]."""
+        return self.e_star * self.load_points.force
+
+    @property
+    def tangential_force(self) -> Array:
+        """F_x = mu E* sum k_i (I_i - I_i-1) [force]. Source: notes, §10."""
+        return self.friction_coefficient * self.e_star * self.load_points.shear
+
+    @property
+    def elastic_energy(self) -> Array:
+        """Energy stored by the normal load, int F_N dd [force length]."""
+        return self.e_star * self.profile.reduced_energy(self.load_points.coordinate)
+
+
 @dataclass(frozen=True, repr=False, eq=False)
-class ContactState(Results):
+class ContactState(LoadPointResults):
     """A contact after any load history, as the polyline of its springs' anchors.
 
     A spring is identified by the depth w of its first contact. Its anchor U - q_x/(mu E*), with
@@ -58,23 +112,7 @@ class ContactState(Results):
     """Polyline before the step of `advance` that led here; None for other states."""
     known_edges: list[Edge] = field(init=False, default_factory=list)
     """Edges of the first vertices; a step passes the edges that it keeps to the next state."""
-    quantities: ClassVar[tuple[str, ...]] = (
-        "indentation_depth",
-        "normal_force",
-        "contact_radius",
-        "tangential_displacement",
-        "tangential_force",
-        "elastic_energy",
-        "tangential_energy",
-        "dissipation",
-        "slip_fronts",
-    )
-    about: ClassVar[tuple[str, ...]] = ()
-
-    @property
-    def displacement_ratio(self) -> float:
-        """mu E*/G* [1], the ratio of a tangential displacement to its reduced value U."""
-        return self.friction_coefficient * self.e_star / self.g_star
+    quantities: ClassVar[tuple[str, ...]] = (*LoadPointResults.quantities, "slip_fronts")
 
     @property
     def indentation_depth(self) -> float:
@@ -146,20 +184,9 @@ class ContactState(Results):
         return read_only(self._tree.slope[1:])
 
     @property
-    def contact_radius(self) -> float:
-        """a [length]."""
-        at = self._edges[-1].coordinate
-        return float(self.profile.contact_radius(at)) if self.in_contact else 0.0
-
-    @property
-    def normal_force(self) -> float:
-        """F_N [force]."""
-        return float(self.e_star * self._edges[-1].force)
-
-    @property
-    def elastic_energy(self) -> float:
-        """Energy stored by the normal load, int F_N dd [force length]."""
-        return float(self.e_star * self.profile.reduced_energy(self._edges[-1].coordinate))
+    def load_points(self) -> Edge:
+        """Contact whose edge the load point is."""
+        return self._edges[-1]
 
     @property
     def tangential_energy(self) -> float:
@@ -178,11 +205,6 @@ class ContactState(Results):
         return float(self.energy_unit * vertices.dissipation[-1])
 
     @property
-    def energy_unit(self) -> float:
-        """(mu E*)^2/G* [pressure]."""
-        return self.friction_coefficient * self.e_star * self.displacement_ratio
-
-    @property
     def slip_fronts(self) -> Array:
         """Radii inside the contact between two segments of q_x, ascending [length]."""
         if self.profile.is_flat_punch:
@@ -199,11 +221,6 @@ class ContactState(Results):
         ends = np.array([fronts[1:-1], self.profile.coordinate_from_reduced_force(moved)])
         inner, outer = self.profile.contact_radius(ends)
         return np.maximum(outer - inner, 0.0)
-
-    @property
-    def tangential_force(self) -> float:
-        """F_x = mu E* sum k_i (I_i - I_i-1) [force]. Source: notes, §10."""
-        return float(self.friction_coefficient * self.e_star * self._edges[-1].shear)
 
 
 def unloaded(

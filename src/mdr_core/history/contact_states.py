@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
-from mdr_core.history.contact_state import ContactState
+from mdr_core.history.contact_state import ContactState, Edge, LoadPointResults
 from mdr_core.history.friction_work import dissipation
 from mdr_core.history.slip_layout import COLUMNS
 from mdr_core.history.slip_memory import Polylines, read_only
@@ -18,8 +18,7 @@ from mdr_core.history.step_results import REGIMES, TractionVertices, decides_reg
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.materials import Material, normal_modulus, shear_modulus
 from mdr_core.profiles import Profile
-from mdr_core.results import Results
-from mdr_core.typing import Array, Indices, Parameter
+from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import (
     as_numbers,
     require_finite,
@@ -30,7 +29,7 @@ from mdr_core.validation import (
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class ContactStates(Results):
+class ContactStates(LoadPointResults):
     """States of many contacts with profiles of one kind.
 
     `states[i]` is one of them as a `ContactState`; a mask, a slice or indices choose several.
@@ -50,9 +49,7 @@ class ContactStates(Results):
     """Slip memory before the step that led here."""
     regime_before: Indices
     """Index of the slip regime in `REGIMES` before that step."""
-    # Slip fronts differ in number.
-    quantities: ClassVar[tuple[str, ...]] = (*ContactState.quantities[:-1], "regime")
-    about: ClassVar[tuple[str, ...]] = ()
+    quantities: ClassVar[tuple[str, ...]] = (*LoadPointResults.quantities, "regime")
     moduli: ClassVar[tuple[str, ...]] = ("e_star", "g_star", "friction_coefficient")
 
     def __len__(self) -> int:
@@ -79,16 +76,6 @@ class ContactStates(Results):
         return ContactStates(regime_before=self.regime_before[at], **given)
 
     @property
-    def displacement_ratio(self) -> Parameter:
-        """mu E*/G* [1]."""
-        return self.friction_coefficient * self.e_star / self.g_star
-
-    @property
-    def energy_unit(self) -> Parameter:
-        """(mu E*)^2/G* [pressure]."""
-        return self.friction_coefficient * self.e_star * self.displacement_ratio
-
-    @property
     def _moments(self) -> IntervalMoments:
         return interval_moments(self.profile, over_forces=False)
 
@@ -113,26 +100,15 @@ class ContactStates(Results):
         return self.displacement_ratio * self.polylines.load_points[1]
 
     @property
-    def contact_radius(self) -> Array:
-        """a [length], zero in separation."""
+    def in_contact(self) -> Flags:
+        """True for contacts that are not separated."""
+        return self.polylines.sizes > 0
+
+    @cached_property
+    def load_points(self) -> Edge:
+        """Contact whose edge the load point of each contact is."""
         edges = self._edges
-        return self._of_contacts(edges.moments.profile.contact_radius(edges.coordinate))
-
-    @property
-    def normal_force(self) -> Array:
-        """F_N [force]."""
-        return self.e_star * self._of_contacts(self._edges.conjugate)
-
-    @property
-    def tangential_force(self) -> Array:
-        """F_x [force]."""
-        return self.friction_coefficient * self.e_star * self._of_contacts(self._edges.shear)
-
-    @property
-    def elastic_energy(self) -> Array:
-        """Energy stored by the normal load [force length]."""
-        edge = self._of_contacts(self._edges.coordinate)
-        return self.e_star * self.profile.reduced_energy(edge)
+        return Edge(*map(self._of_contacts, (edges.coordinate, edges.conjugate, edges.shear)))
 
     @property
     def tangential_energy(self) -> Array:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from mdr_core import conditioning, normal, validity
 from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.elementwise import number
-from mdr_core.errors import InputError, Notice
+from mdr_core.errors import InputError
 from mdr_core.history import load_path, slip_memory
 from mdr_core.history.contact_state import ContactState, Edge, unloaded
 from mdr_core.history.load_path import UNLOADED, SampledPath, SavedState
@@ -28,7 +28,7 @@ _BEGIN: Final = ("initial_state", "normal")
 
 
 @dataclass(frozen=True, repr=False)
-class LoadHistory(validity.ContactResults):
+class LoadHistory(validity.ResultsOverLoads):
     """Results of a load history at every sample; each is computed on first use."""
 
     path: SampledPath
@@ -217,11 +217,6 @@ class LoadHistory(validity.ContactResults):
     def slips_from(self) -> Array:
         """Least radius with slip [length] in full slip; infinite otherwise."""
         return np.where(self.regime == "full_slip", 0.0, np.inf)
-
-    @property
-    def warnings_without_bodies(self) -> tuple[Notice, ...]:
-        """Warnings that do not depend on the bodies."""
-        return self.normal.warnings_with(self.error_estimate)
 
 
 def solve(

@@ -12,7 +12,7 @@ from scipy.special import ellipkm1
 from mdr_core import conditioning, validity
 from mdr_core.doubles import EPS
 from mdr_core.elementwise import in_blocks, some, where
-from mdr_core.errors import InputError, Notice
+from mdr_core.errors import InputError
 from mdr_core.materials import Material, twist_modulus
 from mdr_core.normal import NormalContact, shape_of_loads
 from mdr_core.profiles import Profile, Tabulated
@@ -20,7 +20,6 @@ from mdr_core.quadrature import composite_rule
 from mdr_core.torsion.curve import DEEPEST, VirginCurves
 from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import (
-    extremes,
     first_index,
     only_one,
     require_finite,
@@ -51,7 +50,7 @@ _OF_CURVES: Final = 10.0
 
 
 @dataclass(frozen=True, repr=False)
-class TorsionalContact(validity.ContactResults):
+class TorsionalContact(validity.ResultsOverLoads):
     """Normal contact under a twist, at any number of pairs of loads.
 
     Results are arrays over the broadcast loads.
@@ -145,16 +144,6 @@ class TorsionalContact(validity.ContactResults):
     def stick_error(self) -> Array:
         """Rounding error of the stick radius [length]."""
         return self.error_estimates * np.minimum(self.stick_radius, self.slip_width)
-
-    @property
-    def error_estimate(self) -> float:
-        """Largest of `error_estimates` [1]."""
-        return extremes(self.error_estimates)[1]
-
-    @property
-    def warnings_without_bodies(self) -> tuple[Notice, ...]:
-        """Warnings that do not depend on the bodies."""
-        return self.normal.warnings_with(self.error_estimate)
 
 
 def solve(
