@@ -173,9 +173,11 @@ class Profile(ABC):
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         """Radii at which the pressure of every contact that contains them is infinite [length].
 
+        By default that of a sharp tip.
         A sweep has one radius for each case, infinite for a case that has none.
         """
-        return ()
+        sharp = where(self.tip_pressure > 0, 0.0, inf)
+        return (sharp,) if some(sharp == 0) else ()
 
     @property
     def pole(self) -> Parameter:
@@ -189,8 +191,8 @@ class Profile(ABC):
 
     @property
     def tip_pressure(self) -> Parameter:
-        """Limit of mean pressure/E* as the load vanishes [1]: zero for smooth and blunt tips."""
-        return 0.0
+        """Limit g'(0)/pi of mean pressure/E* as the load vanishes [1]: zero for smooth tips."""
+        return self.dg(number(0.0)) / np.pi
 
     @property
     def is_flat_punch(self) -> bool:

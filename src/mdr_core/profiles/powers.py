@@ -9,7 +9,7 @@ import numpy as np
 
 from mdr_core.abel.annulus import Annulus, log_ratio, root_step
 from mdr_core.abel.displacement import STEEPNESS
-from mdr_core.elementwise import full, some, where
+from mdr_core.elementwise import full, where
 from mdr_core.profiles.base import FIELDS, NORMAL_QUANTITIES, Profile
 from mdr_core.profiles.cancellation_free import atan_gap
 from mdr_core.profiles.power_functions import (
@@ -45,14 +45,6 @@ class Cone(Profile):
     closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, *FIELDS)
     # Source: mdr-5, Eqs. (5.47), (5.49).
     stick_ratios: ClassVar[StickRatios] = (linear_stick, square_stick)
-
-    @property
-    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
-        return (0.0,)
-
-    @property
-    def tip_pressure(self) -> Parameter:
-        return self.slope / 2
 
     def f(self, radius: Array) -> Array:
         return self.slope * radius
@@ -261,16 +253,6 @@ class Power(Profile):
     def rounding(self) -> Parameter:  # type: ignore[override]  # a constant of most kinds
         # r^n has n times the relative rounding error of the scaled radius.
         return 2e-14 + 8e-15 * self.exponent
-
-    @property
-    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
-        sharp = where(self.exponent <= 1, 0.0, np.inf)
-        return (sharp,) if some(sharp == 0) else ()
-
-    @property
-    def tip_pressure(self) -> Parameter:
-        n = self.exponent
-        return where(n < 1, np.inf, where(n == 1, self.coefficient / 2, 0.0))
 
     @property
     def steepness(self) -> float:

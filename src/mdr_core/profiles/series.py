@@ -131,15 +131,6 @@ class Series(Profile):
         return where(np.isnan(total), inf, total)
 
     @property
-    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
-        return (0.0,) if self._powers[0][1] <= 1 else ()
-
-    @property
-    def tip_pressure(self) -> Parameter:
-        c, n = self._powers[0]
-        return inf if n < 1 else c / 2 if n == 1 else 0.0
-
-    @property
     def flattens(self) -> bool:
         return not self._positive
 
