@@ -75,25 +75,19 @@ class Errors(NamedTuple):
         return size + radial + slope + wall
 
 
-def errors(contact: LoadedContact, material: Material | None) -> Errors:
+def errors(contact: LoadedContact) -> Errors:
     """Return the estimated errors of a contact; Poisson's ratio 0.3 stands for unknown bodies."""
-    if material is contact.material:
-        return contact.half_space_errors
-    return of_material(contact, material)
-
-
-def of_material(contact: LoadedContact, material: Material | None) -> Errors:
-    """Return the estimated errors of a contact of any material; see `errors`."""
+    material = contact.material
     known = None if material is None else material.dundurs_beta
     beta = abs(_ASSUMED_BETA if known is None else known)
     if contact.profile.body_radii is not None:
-        return _of_round_bodies(contact, material, beta)
+        return _of_round_bodies(contact, beta)
     slope = _edge_slope(contact)
     wall = _wall_error(contact, None if material is None else material.profile_share)
     return Errors((0 * slope, _RADIAL * beta * slope, slope * slope, wall + 0 * slope), slope)
 
 
-def _of_round_bodies(contact: LoadedContact, material: Material | None, beta: float) -> Errors:
+def _of_round_bodies(contact: LoadedContact, beta: float) -> Errors:
     """Errors of two round bodies, of first order in x_i = a/|R_i|, s_i their shares in 1/E*.
 
     With X = sum k_i s_i x_i, the slope S = |x_1 s_2 +- x_2 s_1| of the common surface (+ in a
@@ -102,7 +96,7 @@ def _of_round_bodies(contact: LoadedContact, material: Material | None, beta: fl
     0.015 sum s_i x_i + 0.1 |beta| m + 0.05 max x_i^2, and the largest pressure
     0.04 sum s_i x_i + 0.3 |beta| m + 0.4 S^2. Source: notes, §8.
     """
-    bodies = material or Material(1.0)
+    bodies = contact.material or Material(1.0)
     radii = contact.profile.body_radii or ()
     x1, x2 = (contact.contact_radius / np.abs(radius) for radius in radii)
     k1, k2 = (
@@ -132,7 +126,7 @@ def is_concave(radius: Parameter) -> bool:
     return isinstance(radius, float) and radius < 0
 
 
-def layer(contact: LoadedContact, material: Material | None) -> tuple[Array, Array]:
+def layer(contact: LoadedContact) -> tuple[Array, Array]:
     """Return a/h of a body of thickness h, bonded to a rigid base, and its relative error [1].
 
     The base reduces the depth by alpha F_N/(pi E* h), to first order in a/h, with the source's
@@ -141,6 +135,7 @@ def layer(contact: LoadedContact, material: Material | None) -> tuple[Array, Arr
 
     Source: dimitriadis; notes, §8.
     """
+    material = contact.material
     if material is None or material.body_thickness is None:
         return 0 * contact.contact_radius, 0 * contact.contact_radius
     part = contact.contact_radius / material.body_thickness

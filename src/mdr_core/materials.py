@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final, Literal, TypeVar, get_args
+from typing import Any, Final, Literal, TypeVar, get_args
 
 from mdr_core.errors import InputError
 from mdr_core.typing import Parameter
@@ -108,9 +108,7 @@ def normal_modulus(e_star: _Number | Material) -> _Number | float:
     """
     if isinstance(e_star, Material) and e_star.layer is not None:
         raise InputError(("material", "layer"), UNUSABLE)
-    value = e_star.e_star if isinstance(e_star, Material) else e_star
-    _require_both_bodies("e_star", value)
-    return value
+    return _modulus("e_star", e_star, "is needed: give it, or bodies")
 
 
 def shear_modulus(g_star: _Number | Material | None) -> _Number | float:
@@ -118,11 +116,7 @@ def shear_modulus(g_star: _Number | Material | None) -> _Number | float:
 
     The value is not checked.
     """
-    value = g_star.g_star if isinstance(g_star, Material) else g_star
-    _require_both_bodies("g_star", value)
-    if value is None:
-        raise InputError(("material", "g_star"), "is needed with friction: give it, or bodies")
-    return value
+    return _modulus("g_star", g_star, "is needed with friction: give it, or bodies")
 
 
 def twist_modulus(shear_modulus: _Number | Material | None) -> _Number | float:
@@ -130,18 +124,18 @@ def twist_modulus(shear_modulus: _Number | Material | None) -> _Number | float:
 
     The value is not checked. Raises InputError if there is none: G* does not determine it.
     """
-    value = shear_modulus.shear_modulus if isinstance(shear_modulus, Material) else shear_modulus
-    _require_both_bodies("shear_modulus", value)
-    if value is None:
-        detail = "is needed for a twist, 1/G = 1/G1 + 1/G2: give it, or bodies"
-        raise InputError(("material", "shear_modulus"), detail)
-    return value
+    detail = "is needed for a twist, 1/G = 1/G1 + 1/G2: give it, or bodies"
+    return _modulus("shear_modulus", shear_modulus, detail)
 
 
-def _require_both_bodies(name: str, value: object) -> None:
+def _modulus(name: str, given: _Number | Material | None, absent: str) -> _Number | float:
+    """Modulus of a material, or the number itself; `absent` is the sentence if there is none."""
+    value: Any = getattr(given, name) if isinstance(given, Material) else given
     if isinstance(value, Body):
-        detail = "depends on both bodies: combine them by from_bodies([body, other])"
-        raise InputError(("material", name), detail)
+        absent = "depends on both bodies: combine them by from_bodies([body, other])"
+    if value is None or isinstance(value, Body):
+        raise InputError(("material", name), absent)
+    return value
 
 
 def from_bodies(

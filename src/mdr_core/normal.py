@@ -109,7 +109,7 @@ class NormalContact(validity.ResultsOverLoads):
     @cached_property
     def half_space_errors(self) -> half_space.Errors:
         """Estimated errors of the half-space approximation; see `mdr_core.half_space`."""
-        return half_space.of_material(self, self.material)
+        return half_space.errors(self)
 
     @property
     def loaded(self) -> Flags:

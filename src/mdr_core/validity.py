@@ -19,7 +19,7 @@ from mdr_core import half_space
 from mdr_core.elementwise import every, full, number, some, where
 from mdr_core.errors import Notice, Remedy
 from mdr_core.half_space import ASSUMED_RATIO, LoadedContact
-from mdr_core.materials import Layer, Material
+from mdr_core.materials import Layer
 from mdr_core.profiles import Profile, Tabulated
 from mdr_core.results import Results
 from mdr_core.typing import Array, Flags, Parameter
@@ -123,13 +123,12 @@ class ContactResults(Results):
     @cached_property
     def warnings(self: SolvedContact) -> tuple[Notice, ...]:
         """Warnings; where the bodies are unknown, for Poisson's ratio 0.3 on a rigid body."""
-        found = findings(self.solved, self.solved.normal.material)
-        return (*notices(found), *self.warnings_without_bodies)
+        return (*notices(findings(self.solved)), *self.warnings_without_bodies)
 
     @cached_property
     def model_error(self: SolvedContact) -> Array:
         """Estimated relative error of the model in each case [1]; see `validity.model_error`."""
-        return model_error(self.solved, self.solved.normal.material)
+        return model_error(self.solved)
 
     @cached_property
     def model_error_radius(self: SolvedContact) -> Array | None:
@@ -175,7 +174,7 @@ def notices(findings: Iterable[Finding]) -> list[Notice]:
     ]
 
 
-def model_error(contact: SolvedContact, material: Material | None) -> Array:
+def model_error(contact: SolvedContact) -> Array:
     """Return the estimated relative error of depth, force and displacements by the model [1].
 
     An estimate, not a bound, of each load, where 1 stands for 100 % and more: of the half-space
@@ -185,11 +184,9 @@ def model_error(contact: SolvedContact, material: Material | None) -> Array:
     stresses may differ by beta, and displacements under a force next to full slip by more.
 
     Source: hay; spence; notes, §8.
-
-    Parameters: see `findings`.
     """
-    errors = half_space.errors(contact.normal, material)
-    _, layer = half_space.layer(contact.normal, material)
+    material, errors = contact.normal.material, contact.normal.half_space_errors
+    _, layer = half_space.layer(contact.normal)
     # Both thickness and radius give the finite size of a ball.
     is_socket = any(map(half_space.is_concave, contact.normal.profile.body_radii or ()))
     counted = 0.0 if is_socket else errors.parts[0]
@@ -203,7 +200,7 @@ def model_error(contact: SolvedContact, material: Material | None) -> Array:
     return np.minimum(error, 1.0)
 
 
-def findings(contact: SolvedContact, material: Material | None) -> list[Finding]:
+def findings(contact: SolvedContact) -> list[Finding]:
     """Return the findings that depend on the bodies in contact, without `yield`.
 
     Poisson's ratio 0.3 is assumed where they are unknown.
@@ -211,10 +208,10 @@ def findings(contact: SolvedContact, material: Material | None) -> list[Finding]
     Parameters
     ----------
     contact : contact with or without friction, or load history; for wear the one before wear.
-    material : effective moduli, as from `from_bodies`; None where they are unknown.
     """
-    found = of_normal_contact(contact.normal, material, contact.slips_from)
+    found = of_normal_contact(contact.normal, contact.slips_from)
     if contact.g_star is not None:
+        material = contact.normal.material
         beta = None if material is None else material.dundurs_beta
         found.append(of_moduli(contact.normal.e_star, contact.g_star, beta))
     return found
@@ -266,9 +263,7 @@ def tip(contact: LoadedContact, profile: Tabulated) -> Finding:
     return _above_limit("tip", full(rival, contact.contact_radius), message)
 
 
-def of_normal_contact(
-    contact: LoadedContact, material: Material | None = None, slips_from: Parameter = np.inf
-) -> list[Finding]:
+def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Finding]:
     """Return `half_space`, `thin_body`, `large_strain` and `plastic`.
 
     `half_space`: the estimated error of the half-space approximation exceeds one per cent. It is
@@ -282,7 +277,8 @@ def of_normal_contact(
 
     Source: hay; notes, §8.
     """
-    errors, radii = half_space.errors(contact, material), contact.profile.body_radii
+    material = contact.material
+    errors, radii = contact.half_space_errors, contact.profile.body_radii
     is_known = material is not None and material.dundurs_beta is not None
     in_socket = any(map(half_space.is_concave, radii or ()))
     instead: Remedy = "conforming_contact" if in_socket else "finite_elements"
@@ -324,14 +320,14 @@ def of_normal_contact(
 
     found = [_above_limit("half_space", errors.force, message, instead)]
     if material is not None and material.body_thickness is not None:
-        found.append(_thin_body(contact, material))
+        found.append(_thin_body(contact))
     if radii is not None:
         found.append(_large_strain(contact))
     return [*found, Finding("plastic", _infinite(contact, yields), places, instead="rounded_tip")]
 
 
-def _thin_body(contact: LoadedContact, material: Material | None) -> Finding:
-    part, error = half_space.layer(contact, material)
+def _thin_body(contact: LoadedContact) -> Finding:
+    part, error = half_space.layer(contact)
 
     def message() -> str:
         return (

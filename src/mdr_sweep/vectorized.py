@@ -162,7 +162,7 @@ def _warnings(
 ) -> NDArray[Any]:
     """Return the codes of the warnings of each case, in the service's order."""
     contact = source.normal
-    found = validity.findings(source, contact.material)
+    found = validity.findings(source)
     flags: dict[str, Any] = {each.code: each.where for each in found}
     flags |= {notice.code: True for notice in contact.profile.notices}
     flags |= {each.code: each.where for each in contact.findings}

@@ -43,7 +43,11 @@ def bodies(*poissons_ratios: float) -> Material:
 def warnings_of(
     contact: normal.NormalContact | tangential.TangentialContact, material: Material
 ) -> dict[str, validity.Finding]:
-    return {f.code: f for f in validity.findings(contact, material) if np.any(f.where)}
+    pressed = replace(contact.normal, material=material)
+    given = pressed
+    if isinstance(contact, tangential.TangentialContact):
+        given = replace(contact, normal=pressed)
+    return {f.code: f for f in validity.findings(given) if np.any(f.where)}
 
 
 def sticking(contact: normal.NormalContact, g_star: float) -> tangential.TangentialContact:

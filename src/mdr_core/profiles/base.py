@@ -173,9 +173,11 @@ class Profile(ABC):
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         """Radii at which the pressure of every contact that contains them is infinite [length].
 
+        By default that of a sharp tip.
         A sweep has one radius for each case, infinite for a case that has none.
         """
-        return ()
+        sharp = where(self.tip_pressure > 0, 0.0, inf)
+        return (sharp,) if some(sharp == 0) else ()
 
     @property
     def pole(self) -> Parameter:
@@ -189,8 +191,8 @@ class Profile(ABC):
 
     @property
     def tip_pressure(self) -> Parameter:
-        """Limit of mean pressure/E* as the load vanishes [1]: zero for smooth and blunt tips."""
-        return 0.0
+        """Limit g'(0)/pi of mean pressure/E* as the load vanishes [1]: zero for smooth tips."""
+        return self.dg(number(0.0)) / np.pi
 
     @property
     def is_flat_punch(self) -> bool:
@@ -208,14 +210,14 @@ class Profile(ABC):
         return False
 
     @property
-    def steepness(self) -> float:
-        """Largest local exponent of g; it sets the number of nodes."""
-        return STEEPNESS
+    def exponents(self) -> tuple[float, ...]:
+        """Exponents of powers of which g is a sum; none if all lie from 1 to `STEEPNESS`."""
+        return ()
 
     @property
-    def tip_exponent(self) -> float:
-        """Lower bound of the exponent of g at the axis, at most 1."""
-        return 1.0
+    def steepness(self) -> float:
+        """Largest local exponent of g; it sets the number of nodes."""
+        return max((STEEPNESS, *self.exponents))
 
     # Methods over the contact coordinate.
 
@@ -367,8 +369,8 @@ class Profile(ABC):
     @property
     def branches(self) -> tuple[Branch, ...]:
         """Intervals on which g' is smooth except for the root at the start of each."""
-        tip, steepness = self.tip_exponent, self.steepness
-        return (Branch(0.0, lambda x, _: self.dg(x), tip=tip, steepness=steepness),)
+        tip = min((1.0, *self.exponents))
+        return (Branch(0.0, lambda x, _: self.dg(x), tip=tip, steepness=self.steepness),)
 
     def branch_weights(self, x: Array, s: Array, owner: Indices) -> Array:
         """Weights g'(x) s/x of the integrals over s [1], shape (n, m).

@@ -8,8 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from mdr_core.abel.annulus import Annulus, log_ratio, root_step
-from mdr_core.abel.displacement import STEEPNESS
-from mdr_core.elementwise import full, some, where
+from mdr_core.elementwise import where
 from mdr_core.profiles.base import FIELDS, NORMAL_QUANTITIES, Profile
 from mdr_core.profiles.cancellation_free import atan_gap
 from mdr_core.profiles.power_functions import (
@@ -26,8 +25,57 @@ from mdr_core.profiles.power_functions import (
 from mdr_core.typing import Array, Flags, Parameter
 
 
+class PowerLaw(Profile):
+    """Power of the radius; `Power` gives the formulas."""
+
+    coefficient: Parameter
+    exponent: Parameter
+
+    def f(self, radius: Array) -> Array:
+        with np.errstate(over="ignore", under="ignore"):
+            return power(self.coefficient, radius, self.exponent)
+
+    def df(self, radius: Array) -> Array:
+        with np.errstate(divide="ignore", over="ignore", under="ignore"):
+            return power_slope(self.coefficient, radius, self.exponent)
+
+    def g(self, x: Array) -> Array:
+        return kappa(self.exponent) * self.f(x)
+
+    def dg(self, x: Array) -> Array:
+        return kappa(self.exponent) * self.df(x)
+
+    def reduced_force(self, coordinate: Array) -> Array:
+        n = self.exponent
+        with np.errstate(over="ignore", invalid="ignore"):
+            return (2 * n / (n + 1)) * self.g(coordinate) * coordinate
+
+    def coordinate_from_depth(self, depth: Array) -> Array:
+        n = self.exponent
+        return power_root(depth / kappa(n), self.coefficient, n)
+
+    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
+        n = self.exponent
+        part = reduced_force * ((n + 1) / (2 * n * kappa(self.exponent)))
+        return power_root(part, self.coefficient, n + 1)
+
+    def reduced_energy(self, coordinate: Array) -> Array:
+        n = self.exponent
+        factor = 2 * n * n / ((n + 1) * (2 * n + 1))
+        with np.errstate(over="ignore"):
+            return np.square(self.g(coordinate)) * coordinate * factor
+
+    def falls_from_axis(self, coordinate: Array) -> Flags:
+        return (coordinate >= 0) & (self.exponent <= 2)
+
+    def axis_stress(self, coordinate: Array) -> Array:
+        n = self.exponent
+        finite = self.dg(coordinate) / (pi * where(n > 1, n - 1, 1.0))
+        return where(n > 1, finite, np.inf)
+
+
 @dataclass(frozen=True)
-class Cone(Profile):
+class Cone(PowerLaw):
     """Cone f = t r with g(x) = (pi/2) t x and F_N(a)/E* = (pi/2) t a^2.
 
     Source: mdr-5, Eqs. (5.46)-(5.53).
@@ -40,43 +88,15 @@ class Cone(Profile):
     slope: Parameter
 
     kind: ClassVar[str] = "cone"
-    exponent: ClassVar[float] = 1.0
+    exponent: ClassVar[float] = 1.0  # type: ignore[misc]  # a field of other powers
     formula: ClassVar[str] = "slope·r"
     closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, *FIELDS)
     # Source: mdr-5, Eqs. (5.47), (5.49).
     stick_ratios: ClassVar[StickRatios] = (linear_stick, square_stick)
 
     @property
-    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
-        return (0.0,)
-
-    @property
-    def tip_pressure(self) -> Parameter:
-        return self.slope / 2
-
-    def f(self, radius: Array) -> Array:
-        return self.slope * radius
-
-    def df(self, radius: Array) -> Array:
-        return self.slope * full(1.0, radius)
-
-    def g(self, x: Array) -> Array:
-        return (pi / 2) * self.slope * x
-
-    def dg(self, x: Array) -> Array:
-        return (pi / 2) * self.slope * full(1.0, x)
-
-    def reduced_force(self, coordinate: Array) -> Array:
-        return (pi / 2) * self.slope * coordinate * coordinate
-
-    def coordinate_from_depth(self, depth: Array) -> Array:
-        return depth / ((pi / 2) * self.slope)
-
-    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
-        return np.sqrt(reduced_force / ((pi / 2) * self.slope))
-
-    def reduced_energy(self, coordinate: Array) -> Array:
-        return np.square(self.g(coordinate)) * coordinate / 3
+    def coefficient(self) -> Parameter:  # type: ignore[override]  # a field of other powers
+        return self.slope
 
     def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.48). Parameters: see `Profile`."""
@@ -126,7 +146,7 @@ class Cone(Profile):
 
 
 @dataclass(frozen=True)
-class Paraboloid(Profile):
+class Paraboloid(PowerLaw):
     """Paraboloid f = r^2/(2R) with g(x) = x^2/R and F_N(a)/E* = 4a^3/(3R).
 
     Source: mdr-5, Eqs. (5.5)-(5.17).
@@ -139,7 +159,7 @@ class Paraboloid(Profile):
     radius: Parameter
 
     kind: ClassVar[str] = "paraboloid"
-    exponent: ClassVar[float] = 2.0
+    exponent: ClassVar[float] = 2.0  # type: ignore[misc]  # a field of other powers
     formula: ClassVar[str] = "r²/(2·radius)"
     closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, *FIELDS)
     # Source: mdr-5, Eqs. (5.12), (5.16).
@@ -149,11 +169,11 @@ class Paraboloid(Profile):
     def body_radii(self) -> tuple[Parameter, Parameter]:
         return self.radius, inf
 
-    def f(self, radius: Array) -> Array:
-        return radius * radius / (2 * self.radius)
+    @property
+    def coefficient(self) -> Parameter:  # type: ignore[override]  # a field of other powers
+        return 1 / (2 * self.radius)
 
-    def df(self, radius: Array) -> Array:
-        return radius / self.radius
+    # Millions of contacts are of this kind: what they need is written without powers.
 
     def g(self, x: Array) -> Array:
         return x * x / self.radius
@@ -169,9 +189,6 @@ class Paraboloid(Profile):
 
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
         return np.cbrt(0.75 * reduced_force * self.radius)
-
-    def reduced_energy(self, coordinate: Array) -> Array:
-        return np.square(self.g(coordinate)) * coordinate * (8 / 15)
 
     def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.15). Parameters: see `Profile`."""
@@ -222,9 +239,6 @@ class Paraboloid(Profile):
         gap = atan_gap(a, np.where(root > 0, root, 1.0))
         return (a * a * np.arctan2(a, root) + root * gap) / (pi * self.radius)
 
-    def falls_from_axis(self, coordinate: Array) -> Flags:
-        return coordinate >= 0
-
     def axis_stress(self, coordinate: Array) -> Array:
         return self.dg(coordinate) / pi
 
@@ -237,7 +251,7 @@ class Paraboloid(Profile):
 
 
 @dataclass(frozen=True)
-class Power(Profile):
+class Power(PowerLaw):
     """Power f = C r^n with g(x) = kappa_n C x^n and F_N(a)/E* = (2n/(n + 1)) kappa_n C a^(n+1).
 
     Source: mdr-5, Eqs. (5.24)-(5.33).
@@ -263,66 +277,10 @@ class Power(Profile):
         return 2e-14 + 8e-15 * self.exponent
 
     @property
-    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
-        sharp = where(self.exponent <= 1, 0.0, np.inf)
-        return (sharp,) if some(sharp == 0) else ()
-
-    @property
-    def tip_pressure(self) -> Parameter:
-        n = self.exponent
-        return where(n < 1, np.inf, where(n == 1, self.coefficient / 2, 0.0))
-
-    @property
-    def steepness(self) -> float:
-        return max(STEEPNESS, float(np.max(self.exponent)))
-
-    @property
-    def tip_exponent(self) -> float:
-        return min(1.0, float(np.min(self.exponent)))
-
-    def f(self, radius: Array) -> Array:
-        with np.errstate(over="ignore", under="ignore"):
-            return power(self.coefficient, radius, self.exponent)
-
-    def df(self, radius: Array) -> Array:
-        with np.errstate(divide="ignore", over="ignore", under="ignore"):
-            return power_slope(self.coefficient, radius, self.exponent)
-
-    def g(self, x: Array) -> Array:
-        return kappa(self.exponent) * self.f(x)
-
-    def dg(self, x: Array) -> Array:
-        return kappa(self.exponent) * self.df(x)
-
-    def reduced_force(self, coordinate: Array) -> Array:
-        n = self.exponent
-        with np.errstate(over="ignore", invalid="ignore"):
-            return (2 * n / (n + 1)) * self.g(coordinate) * coordinate
-
-    def coordinate_from_depth(self, depth: Array) -> Array:
-        n = self.exponent
-        return power_root(depth / kappa(n), self.coefficient, n)
-
-    def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
-        n = self.exponent
-        part = reduced_force * ((n + 1) / (2 * n * kappa(self.exponent)))
-        return power_root(part, self.coefficient, n + 1)
-
-    def reduced_energy(self, coordinate: Array) -> Array:
-        n = self.exponent
-        factor = 2 * n * n / ((n + 1) * (2 * n + 1))
-        with np.errstate(over="ignore"):
-            return np.square(self.g(coordinate)) * coordinate * factor
+    def exponents(self) -> tuple[float, ...]:
+        return float(np.min(self.exponent)), float(np.max(self.exponent))
 
     @property
     def stick_ratios(self) -> StickRatios:  # type: ignore[override]  # a constant of other kinds
         """Source: mdr-5, Eqs. (5.29), (5.31)."""
         return partial(power_stick, self.exponent), partial(power_stick, self.exponent + 1)
-
-    def falls_from_axis(self, coordinate: Array) -> Flags:
-        return (coordinate >= 0) & (self.exponent <= 2)
-
-    def axis_stress(self, coordinate: Array) -> Array:
-        n = self.exponent
-        finite = self.dg(coordinate) / (pi * where(n > 1, n - 1, 1.0))
-        return where(n > 1, finite, np.inf)

@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mdr_core.abel.displacement import STEEPNESS
 from mdr_core.doubles import EPS, LOG_RANGE
 from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
@@ -102,7 +101,7 @@ class Series(Profile):
 
     @property
     def rounding(self) -> float:  # type: ignore[override]  # a constant of most kinds
-        return 4e-14 + 8e-15 * max(n for _, n in self._powers)
+        return 4e-14 + 8e-15 * max(self.exponents)
 
     def rounding_at(self, coordinate: Array) -> Parameter:
         """The bound includes cancellation between positive and negative terms. See `Profile`."""
@@ -131,25 +130,12 @@ class Series(Profile):
         return where(np.isnan(total), inf, total)
 
     @property
-    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
-        return (0.0,) if self._powers[0][1] <= 1 else ()
-
-    @property
-    def tip_pressure(self) -> Parameter:
-        c, n = self._powers[0]
-        return inf if n < 1 else c / 2 if n == 1 else 0.0
-
-    @property
     def flattens(self) -> bool:
         return not self._positive
 
     @property
-    def steepness(self) -> float:
-        return max(STEEPNESS, *(n for _, n in self._powers))
-
-    @property
-    def tip_exponent(self) -> float:
-        return min(1.0, self._powers[0][1])
+    def exponents(self) -> tuple[float, ...]:
+        return tuple(n for _, n in self._powers)
 
     def f(self, radius: Array) -> Array:
         return self._total(power(c, radius, n) for c, n in self._powers)

@@ -1,5 +1,6 @@
 """Spheroids: sphere and ellipsoid."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, pi
 from typing import ClassVar, Final
@@ -122,21 +123,18 @@ class Spheroid(Profile):
 
     def reduced_energy(self, coordinate: Array) -> Array:
         depth = self.depth(coordinate)
-
-        def density(v: Array) -> Array:
-            left = depth - self.height * v * np.tanh(v)
-            return self.radius * np.square(left / np.cosh(v))
-
-        return power_law_integral(density, self._artanh(coordinate), 1.0)
+        return self._integral(lambda x: np.square(depth - self.g(x)), coordinate)
 
     def axis_stress(self, coordinate: Array) -> Array:
-        """(h/(pi R)) int (1 + 2v/sinh(2v)) dv. Parameters: see `Profile`."""
+        return self._integral(lambda x: self.dg(x) / x, coordinate) / pi
 
-        def density(v: Array) -> Array:
-            return 1 + 2 * v / np.sinh(2 * v)
+    def _integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
+        """int_0^a density(x) dx over v = artanh(x/R), which resolves the pole at the equator."""
 
-        stress = power_law_integral(density, self._artanh(coordinate), 1.0)
-        return self.height / (pi * self.radius) * stress
+        def over_v(v: Array) -> Array:
+            return density(self.radius * np.tanh(v)) * (self.radius / np.square(np.cosh(v)))
+
+        return power_law_integral(over_v, self._artanh(coordinate), 1.0)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return coordinate <= _SHALLOW * self.radius

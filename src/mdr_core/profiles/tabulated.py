@@ -207,10 +207,6 @@ class Tabulated(Profile):
         jumps = zip(self._breaks, self.fit.flanks, strict=True)
         return (*tip, *(b for b, (slope, _) in jumps if slope != 0))
 
-    @property
-    def tip_pressure(self) -> float:
-        return float(self.fit.rows[0, 0] / np.pi)
-
     @cached_property
     def _flanks(self) -> tuple[tuple[float, Truncated], ...]:
         """Profiles that are added beyond the breaks, with their coefficients."""

@@ -1,6 +1,5 @@
 """Exact gap of two spheres, or of a ball in a spherical socket."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, Final
 
@@ -9,7 +8,6 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
-from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.profiles.spheroids import Spheroid
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import as_numbers, require_finite
@@ -123,21 +121,6 @@ class TwoSpheres(Spheroid):
     def reduced_force(self, coordinate: Array) -> Array:
         """2 int_0^a x g'(x) dx, because closed forms cancel in a socket. See `Profile`."""
         return self._integral(lambda x: 2 * x * self.dg(x), coordinate)
-
-    def reduced_energy(self, coordinate: Array) -> Array:
-        depth = self.depth(coordinate)
-        return self._integral(lambda x: np.square(depth - self.g(x)), coordinate)
-
-    def axis_stress(self, coordinate: Array) -> Array:
-        return self._integral(lambda x: self.dg(x) / x, coordinate) / np.pi
-
-    def _integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
-        """int_0^a density(x) dx over v = artanh(x/R), which resolves the pole at the equator."""
-
-        def over_v(v: Array) -> Array:
-            return density(self.radius * np.tanh(v)) * (self.radius / np.square(np.cosh(v)))
-
-        return power_law_integral(over_v, self._artanh(coordinate), 1.0)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
         return Profile.pressure_kernel(self, annulus, radius)

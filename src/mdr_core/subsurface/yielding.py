@@ -20,7 +20,8 @@ from mdr_core.fields import graded
 from mdr_core.half_space import ASSUMED_RATIO
 from mdr_core.history import LoadHistory
 from mdr_core.inversion import MAX_STEPS
-from mdr_core.profiles import Cone, Paraboloid, Power, Profile
+from mdr_core.profiles import Power, Profile
+from mdr_core.profiles.powers import PowerLaw
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.subsurface.stress import MOMENT_ERROR, on_rings
 from mdr_core.typing import Array, Indices
@@ -167,7 +168,7 @@ def yield_finding(
                 decide(half)
 
     where = np.zeros(shape, dtype=bool)
-    if isinstance(profile, Cone | Paraboloid | Power) and not columns[1].any():
+    if isinstance(profile, PowerLaw) and not columns[1].any():
         # Under a power the stresses are similar at all loads.
         factors = [np.vectorize(_factor, otypes=[float])(profile.exponent, nu) for nu in ratios]
         peaks = 2 * np.max(factors, axis=0) * pressed.mean_pressure
