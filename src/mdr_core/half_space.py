@@ -8,8 +8,10 @@ from typing import Final, NamedTuple, Protocol
 import numpy as np
 
 from mdr_core.elementwise import every, full, some, where
+from mdr_core.layer_response import softening
 from mdr_core.materials import Layer, Material
 from mdr_core.profiles import Profile
+from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array, Flags, Parameter
 
 # Relative error by the neglected radial displacement, over |beta| and the slope of a cone. Source:
@@ -33,6 +35,9 @@ _SOCKET: Final = 0.6
 # -0.003, -0.083 and -0.88 at a/h 0.1, 0.5 and 2 for nu = 1/2, and -0.12 at 2 for nu = 0.3.
 # Source: manual, Contact with a layer, finite elements.
 _SQUEEZED, _LEVELS, _COMPRESSIBLE = 0.32, 0.114, 2.5
+
+# w at which 1 - L is below the rounding error.
+_WAVES: Final = 22.0
 
 
 class LoadedContact(Protocol):
@@ -148,6 +153,22 @@ def _base(material: Material | None) -> float:
     nu, first = largest_ratio(material), None if material is None else material.profile_share
     share = 1.0 if first is None else max(first, 1 - first)
     return share * 2 / np.pi * (1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu)
+
+
+def thickness_at_a_force(contact: LoadedContact, material: Material, h: float) -> Array:
+    """Relative error of radius and pressure under a force by a rigid base at the depth h [1].
+
+    (2/3) (s/pi) (a/h)^3 int_0^oo (1 - L) w^2 dw, to first order in (a/h)^3, with the share s of the
+    more compliant body. Source: manual, Contact with a layer.
+    """
+    base = Layer(1.0, "bonded", largest_ratio(material))
+    shares, weights = composite_rule(32, 2)
+    w = _WAVES * shares
+    moment = float(_WAVES * weights @ (softening(base, w) * w * w))
+    first = material.profile_share
+    share = 1.0 if first is None else max(first, 1 - first)
+    part = contact.contact_radius / h
+    return np.asarray(2 / 3 * share / np.pi * moment * part**3)
 
 
 def stiffening(tolerance: float, material: Material | None) -> float:

@@ -29,7 +29,7 @@ _SOURCES: Final[Mapping[str, Sequence[str]]] = json.loads(
     files("mdr_core").joinpath("sources.json").read_text("utf-8")
 )
 MODEL_ERRORS: Final = ("model_error", "model_error_radius", "model_error_pressure")
-"""Estimates of the error of the model; the last two exist for round bodies alone."""
+"""Estimates of the error of the model; the last two exist for round bodies or a thickness."""
 # Sizes above which each limit is reported; judgements.
 _LIMITS: Final = {
     # Contact radius over the last radius of a table.
@@ -132,13 +132,15 @@ class ContactResults(Results):
 
     @cached_property
     def model_error_radius(self: SolvedContact) -> Array | None:
-        """Estimated error of the contact radius under a force [1]; None but of round bodies."""
-        return _at_most_1(self.solved.normal.half_space_errors.radius)
+        """Estimated error of the contact radius under a force [1]; see `_under_a_force`."""
+        normal = self.solved.normal
+        return _under_a_force(normal, normal.half_space_errors.radius)
 
     @cached_property
     def model_error_pressure(self: SolvedContact) -> Array | None:
-        """Estimated error of the pressure under a force [1]; None but of round bodies."""
-        return _at_most_1(self.solved.normal.half_space_errors.pressure)
+        """Estimated error of the pressure under a force [1]; see `_under_a_force`."""
+        normal = self.solved.normal
+        return _under_a_force(normal, normal.half_space_errors.pressure)
 
 
 class ResultsOverLoads(ContactResults):
@@ -156,7 +158,16 @@ class ResultsOverLoads(ContactResults):
         return found
 
 
-def _at_most_1(error: Array | None) -> Array | None:
+def _under_a_force(contact: LoadedContact, error: Array | None) -> Array | None:
+    """Add the error by a body's thickness to an error by the size of round bodies, up to 1.
+
+    None where there is neither, and under a flat punch, whose radius is given.
+    """
+    material = contact.material
+    thickness = None if material is None else material.body_thickness
+    if material is not None and thickness is not None and not contact.profile.is_flat_punch:
+        base = half_space.thickness_at_a_force(contact, material, thickness)
+        error = base if error is None else error + base
     return None if error is None else np.minimum(error, 1.0)
 
 

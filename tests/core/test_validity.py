@@ -10,9 +10,9 @@ import pytest
 from scipy.integrate import quad
 from verification import compressed_ball, transverse_slip
 
-from mdr_core import adhesion, half_space, normal, tangential, validity
+from mdr_core import adhesion, half_space, layer, normal, tangential, validity
 from mdr_core.errors import InputError
-from mdr_core.materials import RIGID, Body, Material, from_bodies
+from mdr_core.materials import RIGID, Body, Layer, Material, from_bodies
 from mdr_core.profiles import (
     CappedParaboloid,
     Cone,
@@ -410,3 +410,23 @@ def test_warning_near_the_end_of_a_table() -> None:
     table = Tabulated(R, R**2 / 200)
     assert codes(normal.solve(table, 1.0, contact_radius=0.94)) == []
     assert codes(normal.solve(table, 1.0, contact_radius=0.96)) == ["table_end"]
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+def test_thickness_changes_radius_and_pressure_under_a_force_by_less_than_stated(nu: float) -> None:
+    """The contact with the layer itself has one to two thirds of the estimate."""
+    bodies = [RIGID, Body(1.0, nu)]
+    thin = normal.solve(
+        Cone(1.0), from_bodies(bodies, body_thickness=10.0), contact_radius=[0.5, 1.0]
+    )
+    on_layer = layer.solve(
+        Cone(1.0),
+        from_bodies(bodies, layer=Layer(10.0, "bonded", nu)),
+        normal_force=thin.normal_force,
+    )
+    radius = 1 - on_layer.contact_radius / thin.contact_radius
+    assert thin.model_error_radius is not None
+    assert thin.model_error_pressure is not None
+    for estimate in (thin.model_error_radius, thin.model_error_pressure):
+        assert np.all(estimate > radius)
+        assert np.all(estimate < 3 * radius)

@@ -26,7 +26,7 @@ _Regime = Annotated[
     Field(description="Slip regime: `stick`, `partial_slip` or `full_slip`."),
 ]
 _NULL = "null where infinite, with a warning `singular`"
-_ROUND = "under a given force by the model, of spheres and paraboloids"
+_ROUND = "under a given force by the model, of round bodies or a given thickness"
 _UNBOUNDED = "null if wear is unbounded"
 _of_pressure = partial(
     quantity,
