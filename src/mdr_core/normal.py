@@ -19,6 +19,7 @@ from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import (
+    as_positive,
     extremes,
     only_one,
     require_not_negative,
@@ -285,14 +286,18 @@ def solve(
     """
     require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     material = e_star if isinstance(e_star, Material) else None
-    # A plain number is the most frequent input, and this test is fast.
-    e_star = e_star if isinstance(e_star, float) else normal_modulus(e_star)
+    # A plain number, the most frequent input, is checked with the load.
+    modulus: Parameter = (
+        e_star
+        if isinstance(e_star, float)
+        else as_positive(("material", "e_star"), normal_modulus(e_star))
+    )
     loads = (indentation_depth, normal_force, contact_radius, maximum_pressure)
     names = (*CONTROLS, "maximum_pressure")
     name, load = only_one(("load",), dict(zip(names, loads, strict=True)))
-    spread = _over_cases(profile, e_star, name, load)
-    coordinate = _coordinate(name, profile, e_star, spread)
-    contact = NormalContact(profile, e_star, coordinate, name, material)
+    spread = _over_cases(profile, modulus, name, load)
+    coordinate = _coordinate(name, profile, modulus, spread)
+    contact = NormalContact(profile, modulus, coordinate, name, material)
     # The prescribed load is returned bit-identical.
     vars(contact)[name] = spread
     return contact

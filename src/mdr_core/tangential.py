@@ -18,7 +18,7 @@ from mdr_core.normal import NormalContact, shape_of_loads
 from mdr_core.profiles import Profile
 from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validation import only_one, require_positive, require_type
+from mdr_core.validation import as_positive, only_one, require_type
 
 # Relative rounding error of the full-slip displacement mu (E*/G*) d, which has three products.
 _LIMIT_ERROR: Final = 1.5 * EPS
@@ -315,12 +315,11 @@ def solve(
     [1.0, 0.5]
     """
     require_type("contact", contact, NormalContact, "a contact from normal.solve")
-    g_star = shear_modulus(g_star)
-    require_positive(("material", "g_star"), g_star)
-    require_positive(("friction_coefficient",), friction_coefficient)
+    modulus: Parameter = as_positive(("material", "g_star"), shear_modulus(g_star))
+    friction_coefficient = as_positive(("friction_coefficient",), friction_coefficient)
     loads = (tangential_force, tangential_displacement, stick_radius)
     name, given = only_one(("tangential",), dict(zip(CONTROLS, loads, strict=True)))
-    parameters = (g_star, friction_coefficient)
+    parameters = (modulus, friction_coefficient)
     shape = shape_of_loads(contact, ("tangential", name), given, *parameters)
     edge, width, sign, full_slip, excess = stick_zone.solve(contact, *parameters, name, given)
     edge, width = broadcast(edge, shape), broadcast(width, shape)

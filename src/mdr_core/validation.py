@@ -63,8 +63,11 @@ def as_numbers(path: tuple[str | int, ...], values: float | ArrayLike) -> Array:
             raise InputError((*path, *first_index(masked)), detail)
         with suppress(TypeError, ValueError, OverflowError):
             array = np.asarray(values)
-            # NumPy would convert text, flags and dates as well.
-            if array.dtype.kind in "fiu" or (array.dtype.kind == "O" and not _odd(values)):
+            # NumPy would convert text and dates as well, and flags between numbers of a list.
+            plain = array.dtype.kind in "fiu" and (
+                not isinstance(values, (list, tuple)) or {float, int}.issuperset(map(type, values))
+            )
+            if plain or (array.dtype.kind in "fiuO" and not _odd(values)):
                 numbers = array.astype(float, copy=False)
     if numbers is None:
         odd = _odd(values)
@@ -130,6 +133,14 @@ def require_positive(path: tuple[str | int, ...], value: float | ArrayLike) -> N
     low, high = extremes(value if isinstance(value, float) else as_numbers(path, value))
     if not (low > 0 and high < inf):
         raise InputError(path, POSITIVE if low <= 0 else FINITE)
+
+
+def as_positive(path: tuple[str | int, ...], value: Any) -> Any:
+    """Return positive and finite numbers, a list as an array, or raise InputError at the path."""
+    if isinstance(value, (list, tuple)):
+        value = as_numbers(path, value)
+    require_positive(path, value)
+    return value
 
 
 def require_single_positive(path: tuple[str | int, ...], value: float) -> None:

@@ -56,6 +56,23 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
         "exactly one of",
     ),
     (normal_contact(Cone(1.0), normal_force=[1.0, np.inf]), ("load", "normal_force", 1), "finite"),
+    (normal_contact(Cone(1.0), normal_force=[1.0, True]), ("load", "normal_force"), "not bool"),
+    (lambda: Cone([1.0, True]), ("profile", "slope"), "not bool"),
+    (
+        lambda: normal.solve(Cone(1.0), [1.0, True], normal_force=1.0),
+        ("material", "e_star"),
+        "not bool",
+    ),
+    (
+        lambda: tangential.solve(HERTZ, 1.0, [0.5, True], stick_radius=0.05),
+        ("friction_coefficient",),
+        "not bool",
+    ),
+    (
+        lambda: tangential.solve(HERTZ, 1.0, [[0.5] * 3], stick_radius=0.05),
+        ("tangential", "stick_radius"),
+        "shape",
+    ),
     (
         normal_contact(Cone(np.ones(3)), normal_force=[1.0, 2.0]),
         ("load", "normal_force"),

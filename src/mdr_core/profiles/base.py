@@ -28,7 +28,7 @@ from mdr_core.inversion import Function, invert
 from mdr_core.profiles.power_functions import StickRatios
 from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.typing import Array, Flags, Indices, Parameter
-from mdr_core.validation import as_numbers, require_inside, require_positive
+from mdr_core.validation import as_positive, require_inside
 
 # Quantities of a normal contact, as `Profile.closed_forms` names them.
 NORMAL_QUANTITIES: Final = (
@@ -72,9 +72,7 @@ class Profile(ABC):
     def __post_init__(self) -> None:
         """Raise InputError unless all parameters are positive and finite."""
         for name, value in self.parameters.items():
-            if isinstance(value, (list, tuple)):
-                vars(self)[name] = as_numbers(("profile", name), value)
-            require_positive(("profile", name), getattr(self, name))
+            vars(self)[name] = as_positive(("profile", name), value)
 
     def __dir__(self) -> Iterable[str]:
         """Return the names that completion offers: attributes for users, not for solvers."""
@@ -315,7 +313,8 @@ class Profile(ABC):
 
     def _root(self, load: Function, slope: Function, target: Array) -> Array:
         """Contact coordinate at which a load has a value within the domain."""
-        scale = number(1.0) * self.scale
+        # At a pole the load is infinite, and no power is known.
+        scale = number(1.0) * np.minimum(self.scale, self.pole / 2)
         with np.errstate(all="ignore"):
             # The first approximation takes the load as a power of the coordinate, fitted at the
             # scale.

@@ -20,10 +20,10 @@ from mdr_core.quadrature import composite_rule
 from mdr_core.torsion.curve import DEEPEST, VirginCurves
 from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import (
+    as_positive,
     first_index,
     only_one,
     require_finite,
-    require_positive,
     require_representable,
     require_type,
 )
@@ -195,9 +195,8 @@ def solve(
     0.897338429
     """
     require_type("contact", contact, NormalContact, NEEDED)
-    modulus = twist_modulus(shear_modulus)
-    require_positive(("material", "shear_modulus"), modulus)
-    require_positive(("friction_coefficient",), friction_coefficient)
+    modulus = as_positive(("material", "shear_modulus"), twist_modulus(shear_modulus))
+    friction_coefficient = as_positive(("friction_coefficient",), friction_coefficient)
     loads = (torque, rotation, stick_radius)
     name, given = only_one(("torsion",), dict(zip(CONTROLS, loads, strict=True)))
     require_finite(("torsion", name), given)
