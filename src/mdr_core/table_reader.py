@@ -101,6 +101,15 @@ class ParsedFile(NamedTuple):
     """Line of each point."""
 
 
+class ColumnsError(InputError):
+    """A file leaves open which of its columns are meant."""
+
+    def __init__(self, line: int, detail: str, columns: dict[int, str]) -> None:
+        super().__init__(("table",), f"Line {line}: {detail}")
+        self.columns = columns
+        """Names of the columns of numbers by their number, from 1."""
+
+
 def read_table(
     file: str | Path, length_unit: str | Sequence[str] | None = None, *, to: str = "m"
 ) -> Points:
@@ -211,8 +220,11 @@ def _decoded(content: bytes) -> str:
         return content.decode("cp1252", errors="replace")
 
 
-def parse(content: bytes, kind: Sequence[str]) -> ParsedFile:
-    """Return the table of a file, a `PROFILE` or a `CURVE`, as it is written, or an InputError."""
+def parse(content: bytes, kind: Sequence[str], columns: Sequence[int] | None = None) -> ParsedFile:
+    """Return the table of a file, a `PROFILE` or a `CURVE`, as it is written, or an InputError.
+
+    `columns` are the numbers of the two columns, from 1, where headings do not tell them.
+    """
     text = _decoded(content).replace("−", "-").replace("μ", "µ").replace("\xa0", " ")
     lines = [
         (number, re.match(_COMMENT, line), _content(line))
@@ -226,7 +238,7 @@ def parse(content: bytes, kind: Sequence[str]) -> ParsedFile:
             errors.append((len(rows), error))
         elif rows:
             titles = _titles(heading, separator, len(rows[0][1]), kind)
-            return _table(rows, titles, separator, kind)
+            return _table(rows, titles, separator, kind, columns)
     # Of the dialects, the one in which most lines are numbers is probably meant.
     raise max(errors[1:] or errors, key=lambda each: each[0])[1]
 
@@ -279,7 +291,11 @@ def _rows(
 
 
 def _table(
-    rows: Sequence[_Row], titles: list[Title], separator: str, kind: Sequence[str]
+    rows: Sequence[_Row],
+    titles: list[Title],
+    separator: str,
+    kind: Sequence[str],
+    columns: Sequence[int] | None,
 ) -> ParsedFile:
     first, cells = rows[0]
     numeric = [i for i, cell in enumerate(cells) if re.fullmatch(_NUMBERLIKE, cell)]
@@ -287,8 +303,11 @@ def _table(
     if separator == "," and len(cells) > 2 and whole and not any(each.name for each in titles):
         detail = "a comma may separate columns or decimals; separate columns by ; or tabs"
         raise _refuse(first, detail)
+    if wrong := [number for number in columns or () if number - 1 not in numeric]:
+        raise _refuse(first, f"column {wrong[0]} holds no numbers")
+    places = [number - 1 for number in columns or ()] or _places(titles, numeric, kind, first)
     taken, values = {}, []
-    for i, wanted in zip(_places(titles, numeric, kind, first), kind, strict=True):
+    for i, wanted in zip(places, kind, strict=True):
         title = titles[i]
         is_area = wanted == "radius" and _AREAS & set(re.split(r"[\W\d_]+", title.name.lower()))
         taken[i] = quantity = "area" if is_area else wanted
@@ -380,13 +399,14 @@ def _places(
     """Return the indices of the two columns, or an InputError that asks for their names."""
     if len(numeric) == 2 and not any(titles[i].name for i in numeric):
         return list(numeric)
-    places = []
+    places, names = [], {i + 1: titles[i].name for i in numeric}
     for quantity in kind:
         ranks = [(_rank(titles[i], quantity), i) for i in numeric]
         ranked = sorted((rank, i) for rank, i in ranks if rank is not None)
         if len(ranked) > 1 and ranked[0][0] == ranked[1][0]:
             both = " and ".join(titles[i].name for _, i in ranked[:2])
-            raise _refuse(line, f"{both} may each be the {quantity}: name one of them {quantity}")
+            detail = f"{both} may each be the {quantity}: name one of them {quantity}"
+            raise ColumnsError(line, detail, names)
         places += [i for _, i in ranked[:1]] or [-1]
     left = [i for i in numeric if i not in places and not titles[i].unit]
     if len(numeric) == 2 and left and -1 in places:
@@ -394,7 +414,8 @@ def _places(
         places[places.index(-1)] = left[0]
     if -1 in places:
         asked = " and ".join(f"the {quantity} {_HEADS[quantity]}" for quantity in kind)
-        raise _refuse(line, f"{len(titles)} columns; name {asked} in a line above")
+        detail = f"{len(titles)} columns; name {asked} in a line above"
+        raise ColumnsError(line, detail, names)
     return places
 
 
