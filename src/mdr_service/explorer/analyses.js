@@ -69,8 +69,9 @@ export function listedField(inputs) {
   return loadFields(inputs).find(({ key }) => key === "load");
 }
 
-const MEASURED = {
-  key: "measured", label: "Measured", choices: [["curve", "curve, force over depth"], ["loop", "loop, friction over displacement"]],
+/** Which measurement is fitted. */
+export const MEASURED = {
+  key: "measured", label: "Measured", choices: [["curve", "curve of force"], ["loop", "loop of friction"]],
 };
 
 /** Return the fields of a measured curve or loop: which of its points are fitted. */
@@ -89,7 +90,7 @@ export function curveFields(inputs) {
   ];
 }
 
-const LOOP = "A loop of friction over displacement was measured under a constant normal load: which G* and µ does it tell, and which energy takes a cycle? ± is a standard error.";
+const LOOP = "A loop of friction over displacement was measured under a constant normal load: which shear modulus and coefficient of friction has the contact, and how much energy does a cycle take? ± is a standard error.";
 
 /** Return the question that the page answers. */
 export function leadOf(inputs) {
@@ -159,9 +160,9 @@ export const ANALYSES = {
   fit: {
     title: "Fit",
     lead: "A curve of force over depth was measured: which modulus has the contact, and where does it begin? ± is a standard error.",
-    fields: (inputs) => hasLoop(inputs) ? [MEASURED, {
+    fields: (inputs) => hasLoop(inputs) ? [{
       key: "rig", label: "Compliance of the rig in series", dimension: "compliance", optional: true, placeholder: "fitted",
-    }] : [MEASURED, { key: "nu2", label: "Poisson’s ratio of the sample", dimension: "1", range: [0, 0.5] }, {
+    }] : [{ key: "nu2", label: "Poisson’s ratio of the sample", dimension: "1", range: [0, 0.5] }, {
       key: "fitted", label: "Fitted beside E*",
       choices: [
         ["none", "nothing"], ["contact_point", "contact point"],

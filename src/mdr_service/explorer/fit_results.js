@@ -14,7 +14,7 @@ function parametersOf(found) {
 
 /** Return the numbers that say how well the model meets the forces. */
 const qualityOf = ({ noise, misfit }) => [
-  ["Scatter of the forces", noise[0], "force"], ["Residuals like noise, probability", misfit[0], "1"],
+  ["Scatter of the forces", noise[0], "force", undefined, 2], ["Residuals like noise, probability", misfit[0], "1", undefined, 2],
 ];
 
 /** Return the charts of measured and fitted points `[x, y]`, and of the residuals against `place`. */
@@ -83,7 +83,7 @@ export async function solveFit(inputs, query) {
     known: {},
     numbers: [
       modulus, ...sample, ...parameters,
-      ...(correlation === undefined ? [] : [["Correlation of E* and contact point", correlation, "1"]]),
+      ...(correlation === undefined ? [] : [["Correlation of E* and contact point", correlation, "1", undefined, 2]]),
       ...qualityOf(found),
     ],
     charts: chartsOf(

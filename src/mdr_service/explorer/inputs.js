@@ -156,3 +156,33 @@ export function basics(inputs) {
   const body = hasLayer(inputs) ? { layer: { thickness, base } } : { body_thickness: thickness };
   return { profile: wireProfile(inputs), material: { bodies, ...(thickness === "" ? {} : body) } };
 }
+
+/**
+ * Return the inputs after the choice of a `value` for `key`, with the state of the contact that is
+ * `known` by its quantities where another one is chosen to give it.
+ */
+export function withChoice(given, key, value, known) {
+  const inputs = { ...given, [key]: value };
+  if (key === "control" && known[value] > 0) inputs.load = known[value];
+  if (key === "push" || key === "shear") {
+    const share = known.tangential_force / (inputs.mu * known.normal_force);
+    inputs.amount = value === "ratio" ? Math.min(share || 0.7, 1) : known[value] || inputs.load / 10;
+  }
+  if (key === "oscillation") {
+    inputs.amplitude = value === "tangential_force" ? defaultInputs().amplitude : 2e-7;
+  }
+  if (key === "normal") {
+    inputs.path = rescaled(inputs, 0, Math.max(known[value], 0) || (value === "normal_force" ? 100 : 2e-6));
+  }
+  if (key === "tangential") {
+    inputs.path = rescaled(inputs, 1, Math.abs(known[value]) || (value === "tangential_force" ? 20 : 4e-7));
+  }
+  return inputs;
+}
+
+function rescaled(inputs, column, largest) {
+  const points = pathPoints(inputs);
+  const size = Math.max(...points.map((point) => Math.abs(point[column]))) || 1;
+  for (const point of points) point[column] = Number(((point[column] / size) * largest).toPrecision(6));
+  return points.map((point) => point.join(",")).join(";");
+}

@@ -4,10 +4,10 @@ import { draw, redraw } from "./charts.js";
 import { makeButton } from "./dom.js";
 import { choiceRow, numberRow, optionalRow } from "./form.js";
 import { showEditor } from "./load_path.js";
-import { MATERIALS, materialOf, strengthOf } from "./materials.js";
-import { bodyFields, curveFields, leadOf, listedField, loadFields, ANALYSES, BASE, BODIES, THICKNESS } from "./analyses.js";
-import { copied, download, fileName, inShownUnits, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
-import { controls, defaultInputs, exampleOf, fromAddress, hasLoop, pathPoints, RIGID, TABS, toAddress, withKind } from "./inputs.js";
+import { MATERIALS, materialOf, weakest } from "./materials.js";
+import { bodyFields, curveFields, leadOf, listedField, loadFields, ANALYSES, BASE, BODIES, MEASURED, THICKNESS } from "./analyses.js";
+import { newestWins, query, Refusal } from "./requests.js";
+import { controls, defaultInputs, exampleOf, fromAddress, hasLoop, pathPoints, RIGID, TABS, toAddress, withChoice, withKind } from "./inputs.js";
 import { noteOnUnits, showAccuracy, showNumbers, showProblem } from "./outcome.js";
 import { showReport } from "./report.js";
 import { KINDS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
@@ -15,12 +15,12 @@ import { ownLoads } from "./own_loads.js";
 import { showSketch } from "./sketch.js";
 import { tableField } from "./table_field.js";
 import { CURVE, PROFILE } from "./table_reader.js";
+import { connectExport, showRequest, showRequests } from "./take_away.js";
 import { BASE_UNITS } from "./units.js";
 
 const $ = (selector) => document.querySelector(selector);
 let inputs;
 let catalogue = {};
-let requests = [];
 // Error that is shown, or null.
 let problem = null;
 // The curve and the loop that were last shown.
@@ -115,35 +115,7 @@ function choose(key, value) {
     unreadable.delete("curve");
     return takeCurve(measurements[value] ?? exampleOf(value));
   }
-  inputs = { ...inputs, [key]: value };
-  keepLoad(key, value);
-  show(inputs);
-}
-
-/** Keep the state of the contact when another quantity is chosen to give it. */
-function keepLoad(key, value) {
-  const known = last?.known ?? {};
-  if (key === "control" && known[value] > 0) inputs.load = known[value];
-  if (key === "push" || key === "shear") {
-    const share = known.tangential_force / (inputs.mu * known.normal_force);
-    inputs.amount = value === "ratio" ? Math.min(share || 0.7, 1) : known[value] || inputs.load / 10;
-  }
-  if (key === "oscillation") {
-    inputs.amplitude = value === "tangential_force" ? defaultInputs().amplitude : 2e-7;
-  }
-  if (key === "normal") {
-    inputs.path = rescaled(0, Math.max(known[value], 0) || (value === "normal_force" ? 100 : 2e-6));
-  }
-  if (key === "tangential") {
-    inputs.path = rescaled(1, Math.abs(known[value]) || (value === "tangential_force" ? 20 : 4e-7));
-  }
-}
-
-function rescaled(column, largest) {
-  const points = pathPoints(inputs);
-  const size = Math.max(...points.map((point) => Math.abs(point[column]))) || 1;
-  for (const point of points) point[column] = Number(((point[column] / size) * largest).toPrecision(6));
-  return points.map((point) => point.join(",")).join(";");
+  show(withChoice(inputs, key, value, last?.known ?? {}));
 }
 
 function row(field, reference) {
@@ -187,15 +159,6 @@ function materialRow(i) {
   });
 }
 
-/** Return the elastic body of the lower yield strength, if both are known, else the one that is chosen. */
-function weakest(next) {
-  const rigid = [1, 2].find((i) => next[`e${i}`] === RIGID);
-  if (rigid) return 3 - rigid;
-  const [first, second] = [1, 2].map((i) => strengthOf(next, i));
-  if (first === undefined || second === undefined || first === second) return next.body;
-  return first < second ? 1 : 2;
-}
-
 /** Show how the layer is held where there is one. */
 function showBase() {
   $(".field[data-key=base]")?.toggleAttribute("hidden", inputs.thickness === "");
@@ -215,6 +178,7 @@ function showForm() {
   $("#curve-label").textContent = isLoop ? "Displacement u and friction F, in the order of time" : "Depth d and force F";
   $("[for=unit-depth]").textContent = `${isLoop ? "u" : "d"} in`;
   $("#curve-fields .reverse").hidden = isLoop;
+  fill($("#measured-kind"), rows([MEASURED]));
   fill($("#curve-choice"), rows(curveFields(inputs)));
   $("#curve-choice").hidden = isLoop;
   // A fitted curve tells the modulus of body 2.
@@ -256,31 +220,6 @@ function select(range) {
   show({ ...inputs, from, to });
 }
 
-function showRequests() {
-  const select = $("#request");
-  const chosen = select.value;
-  select.replaceChildren(...requests.map(({ name, path }) => new Option(`${name}: POST /${path}`, name)));
-  if (requests.some(({ name }) => name === chosen)) select.value = chosen;
-  showSource();
-}
-
-function showSource() {
-  const request = requests.find(({ name }) => name === $("#request").value);
-  $("#code").textContent = request ? source($("#language").value, request) : "";
-  $("#copied").textContent = "";
-}
-
-function showRequest(name) {
-  $("#request").value = name;
-  showSource();
-  $("#code").focus();
-}
-
-async function saveCsv() {
-  const { name, path, body } = requests.find((request) => request.name === $("#request").value);
-  download(`${fileName(name)}.csv`, inShownUnits(await queryCsv(path, body), inputs), "text/csv");
-}
-
 function showPath() {
   const editor = $("#editor");
   editor.hidden = inputs.tab !== "cycle";
@@ -306,7 +245,6 @@ const solve = newestWins(async () => {
   try {
     const result = await ANALYSES[current.tab].solve(current, recording);
     if (current.tab !== inputs.tab) return;
-    requests = recorded;
     last = result;
     shownTab = current.tab;
     document.body.classList.remove("stale");
@@ -314,7 +252,7 @@ const solve = newestWins(async () => {
     showNumbers(result.numbers, current);
     showAccuracy(result, noteOnUnits(current, result.known.contact_radius), current, labels());
     sketch();
-    showRequests();
+    showRequests(recorded);
     await draw($("#charts"), result.charts, current, { showRequest, select });
     document.body.dataset.drawn = toAddress(current);
     if (isShown()) setState("current");
@@ -389,12 +327,7 @@ function connect() {
     fail: () => fail("loads"),
   });
   $("#reset").addEventListener("click", () => show({ ...defaultInputs(), tab: inputs.tab }));
-  $("#request").addEventListener("change", showSource);
-  $("#language").addEventListener("change", showSource);
-  $("#copy").addEventListener("click", async () => {
-    $("#copied").textContent = (await copied($("#code"))) ? "Copied." : "Selected: press Ctrl+C to copy.";
-  });
-  $("#csv").addEventListener("click", saveCsv);
+  connectExport(() => inputs);
   $("#print").addEventListener("click", async () => {
     // Without a table the case has changed meanwhile.
     if (!inputs.loads || (await own.computed())) print();

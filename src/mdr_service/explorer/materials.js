@@ -56,3 +56,12 @@ export function massOf(inputs) {
   const mass = (4 / 3) * Math.PI * radius ** 3 * densityOf(inputs);
   return mass > 0 ? mass : undefined;
 }
+
+/** Return the elastic body of the lower yield strength, if both are known, else the one that is chosen. */
+export function weakest(next) {
+  const rigid = [1, 2].find((i) => next[`e${i}`] === "rigid");
+  if (rigid) return 3 - rigid;
+  const [first, second] = [1, 2].map((i) => strengthOf(next, i));
+  if (first === undefined || second === undefined || first === second) return next.body;
+  return first < second ? 1 : 2;
+}

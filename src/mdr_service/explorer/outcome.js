@@ -11,9 +11,9 @@ const $ = (selector) => document.querySelector(selector);
 
 /** Show the numbers of a result. */
 export function showNumbers(numbers, inputs) {
-  const entries = () => numbers.map(([label, value, dimension, error]) => {
+  const entries = () => numbers.map(([label, value, dimension, error, digits]) => {
     const text = typeof value === "string" ? value
-      : error === undefined ? quantity(value, dimension, inputs) : uncertain(value, error, dimension, inputs);
+      : error === undefined ? quantity(value, dimension, inputs, digits) : uncertain(value, error, dimension, inputs);
     return make("div", {}, make("dt", {}, label), make("dd", {}, text));
   });
   $("#numbers").replaceChildren(...entries());

@@ -49,6 +49,8 @@ export function tableField(root, kind, { change, fail }) {
   // Whether the user has chosen a unit since a heading named one.
   const own = [false, false];
   let { heads } = kind;
+  // Text or bytes that were read last, and the columns that were chosen.
+  let given = [];
   // The table whose text the field holds, and the number of the newest text, which is being read.
   let [shown, newest, pending] = [null, 0, false];
 
@@ -85,6 +87,7 @@ export function tableField(root, kind, { change, fail }) {
     part(".columns").replaceChildren(...(columns.length > 2 ? choices.map(([label]) => label) : []));
   };
   const read = async (content = text.value, columns = undefined) => {
+    given = [content, columns];
     part(".thin").hidden = true;
     const turn = ++newest;
     pending = true;
@@ -130,7 +133,7 @@ export function tableField(root, kind, { change, fail }) {
       own[i] = true;
       // The heading of the text states the units that are chosen.
       if (part(".problem").textContent === "") rewrite({ ...shown, units: selects.map(({ value }) => value) });
-      else read();
+      else read(...given);
     });
   });
   text.addEventListener("input", () => read());
