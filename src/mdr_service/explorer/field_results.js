@@ -118,7 +118,7 @@ export async function solveWear(inputs, query) {
       ], near),
       relationChart(
         "Evolution", "Worn volume against cycles", course, ["cycles", "worn_volume"], now,
-        { mark: "these cycles", logarithmic: true },
+        { mark: "these cycles", logarithmic: now.worn_volume > 0 },
       ),
     ],
   };
