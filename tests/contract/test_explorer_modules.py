@@ -122,7 +122,7 @@ def test_numbers_are_shown_in_units_of_their_size(
         (1.0697e7, 1.23e4, "10.697 ± 0.012 MPa"),
         (2.1e11, 4e9, "210.0 ± 4.0 GPa"),
         (5e9, 3e11, "5 ± 300 GPa"),
-        (2e-4, 3e-6, "200.0 ± 3.0 Pa"),
+        (200.0, 3.0, "200.0 ± 3.0 Pa"),
     ],
 )
 def test_digits_follow_the_standard_error(value: float, error: float, shown: str) -> None:
