@@ -3,7 +3,8 @@
 make pages
 
 Prints the time to the first chart with and without the browser cache, the time from a slider to the
-new charts, and the latency of small queries while twenty browsers drag sliders.
+new charts, alone and beside twenty browsers that drag sliders, and the latency of small queries
+beside them.
 """
 
 import asyncio
@@ -108,10 +109,9 @@ async def replay(port: int, drawings: list[list[Any]]) -> None:
     await asyncio.gather(*(dragging(port, drawings) for _ in range(BROWSERS)))
 
 
-def with_browsers(port: int, drawings: list[list[Any]]) -> tuple[float, float]:
-    """Return the 99th percentile of small queries, idle and while browsers drag [s]."""
-    asyncio.run(small_queries(port, 1.0))
-    idle = percentile(asyncio.run(small_queries(port, SECONDS)), 0.99)
+@contextmanager
+def others_dragging(port: int, drawings: list[list[Any]]) -> Iterator[None]:
+    """Let twenty browsers drag sliders within the context."""
     others = subprocess.Popen(
         [sys.executable, __file__, str(port)], stdin=subprocess.PIPE, text=True
     )
@@ -119,11 +119,15 @@ def with_browsers(port: int, drawings: list[list[Any]]) -> tuple[float, float]:
     others.stdin.write(json.dumps(drawings))
     others.stdin.close()
     time.sleep(2.0)
-    busy = percentile(asyncio.run(small_queries(port, SECONDS)), 0.99)
+    yield
     assert others.poll() is None
     others.kill()
     others.wait()
-    return idle, busy
+
+
+def small_p99(port: int) -> float:
+    """Return the 99th percentile of small queries [s]."""
+    return percentile(asyncio.run(small_queries(port, SECONDS)), 0.99)
 
 
 def main() -> None:
@@ -145,11 +149,20 @@ def main() -> None:
                 for kind in ("paraboloid", "rounded_punch")
             }
             drawings = recorded(page, address)
-        idle, busy = with_browsers(port, drawings)
+            with others_dragging(port, drawings):
+                beside = sorted(drag(page, address, "push", "rounded_punch"))
+        asyncio.run(small_queries(port, 1.0))
+        idle = small_p99(port)
+        with others_dragging(port, drawings):
+            busy = small_p99(port)
     print(f"first chart            {median(firsts):6.2f} s   (bound 1.5)")
     print(f"first chart, cached    {median(again):6.2f} s   (bound 0.7)")
     for (tab, kind), taken in moves.items():
         print(f"{tab:5} {kind:16} {taken:6.0f} ms  (bound 100)")
+    print(
+        f"push  rounded_punch    {median(beside):6.0f} ms  beside {BROWSERS} browsers that drag, "
+        f"slowest of {len(beside)} {beside[-1]:.0f} ms"
+    )
     print(
         f"small query, p99       {1e3 * busy:6.2f} ms  while {BROWSERS} browsers drag, "
         f"{1e3 * idle:.2f} ms idle: {busy / idle:.1f} x (bound 10)"

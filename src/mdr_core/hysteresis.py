@@ -33,6 +33,8 @@ _FEWEST: Final = 2
 _STEPS, _CONVERGED = 100, 8 * EPS
 # Range of log G* and log mu about the start, which keeps the numbers representable.
 _RANGE: Final = 15.0
+# Step of a difference of logarithms about the result, and of C in its unit.
+_STEP: Final = 1e-5
 # Half width of an interval of 95 % in log G* or log mu, over the error, and at most; and the least
 # singular value of the slopes, of unit columns. Source: notes, §15.
 _HALF, _WIDEST, _SAME = 1.96, 0.5, 1e-8
@@ -73,6 +75,8 @@ class LoopFit(validity.ContactResults):
     """Standard deviation of the forces, by the residuals [force]."""
     misfit: float
     """Probability that residuals of the right model are as far from noise as these [1]."""
+    dissipated_energy_error: float
+    """Standard deviation of `dissipated_energy`, by those of the parameters [force length]."""
     error_estimate: float
     """Bound on the numerical error of the parameters, over their sizes [1]."""
     notices: tuple[Notice, ...]
@@ -80,7 +84,8 @@ class LoopFit(validity.ContactResults):
     quantities: ClassVar[tuple[str, ...]] = (
         *("fit", "g_star", "friction_coefficient", "force_offset", "rig_compliance"),
         *("standard_errors", "correlation", "noise", "misfit"),
-        *("dissipated_energy", "tangential_displacement", "tangential_force", "residual"),
+        *("dissipated_energy", "dissipated_energy_error"),
+        *("tangential_displacement", "tangential_force", "residual"),
     )
     method: ClassVar[str] = "least_squares"
 
@@ -234,6 +239,15 @@ class _Loop:
         columns.insert(2, np.ones_like(self.force))
         return np.column_stack(columns[: len(self.fit)])
 
+    def energy_slopes(self, x: Array) -> Array:
+        """Return the slopes of the energy of a cycle, by central differences."""
+        slopes = []
+        for step in _STEP * np.eye(x.size):
+            above, below = (self.first_loading(end) for end in (x + step, x - step))
+            change = above.dissipated_energy[-1] - below.dissipated_energy[-1]
+            slopes.append(4 * change / (2 * _STEP))
+        return np.array(slopes)
+
     def start(self) -> Array:
         """Return the best of many parameters, or an InputError.
 
@@ -327,6 +341,7 @@ class _Loop:
             residual * self.size,
             scatter * self.size,
             misfit,
+            scatter * float(np.linalg.norm(self.energy_slopes(x) / scale @ inverse)),
             float(law.error_estimate / values[-1]) + unfinished,
             tuple(found),
         )

@@ -48,6 +48,15 @@ class Title(NamedTuple):
     line: int = 0
 
 
+class ColumnsError(InputError):
+    """A file leaves open which of its columns are meant."""
+
+    def __init__(self, line: int, detail: str, columns: dict[int, str]) -> None:
+        super().__init__(("table",), f"Line {line}: {detail}")
+        self.columns = columns
+        """Names of the columns of numbers by their number, from 1."""
+
+
 def known_units(quantity: str) -> str:
     """Return the units of a quantity that an error names."""
     units = ["N", "mN", "µN", "nN"] if quantity == "force" else [*UNITS]
@@ -145,13 +154,14 @@ def places_of(
     """Return the indices of the two columns, or an InputError that asks for their names."""
     if len(numeric) == 2 and kind == PROFILE and not any(titles[i].name for i in numeric):
         return list(numeric)
-    places = []
+    places, names = [], {i + 1: titles[i].name for i in numeric}
     for quantity in kind:
         ranks = [(_rank(titles[i], quantity), i) for i in numeric]
         ranked = sorted((rank, i) for rank, i in ranks if rank is not None)
         if len(ranked) > 1 and ranked[0][0] == ranked[1][0]:
             both = " and ".join(titles[i].name for _, i in ranked[:2])
-            raise refuse(line, f"{both} may each be the {quantity}: name one of them {quantity}")
+            detail = f"{both} may each be the {quantity}: name one of them {quantity}"
+            raise ColumnsError(line, detail, names)
         places += [i for _, i in ranked[:1]] or [-1]
     left = [i for i in numeric if i not in places and not titles[i].unit]
     if len(numeric) == 2 and left and -1 in places:
@@ -160,7 +170,8 @@ def places_of(
     if -1 in places:
         asked = " and ".join(f"the {quantity} {HEADS[quantity]}" for quantity in kind)
         form = "r [mm];f [µm]" if kind == PROFILE else "d [nm];F [mN]"
-        raise refuse(line, f"{len(titles)} columns; name {asked} in a line above, as {form}")
+        detail = f"{len(titles)} columns; name {asked} in a line above, as {form}"
+        raise ColumnsError(line, detail, names)
     return places
 
 

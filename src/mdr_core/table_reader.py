@@ -189,97 +189,13 @@ def _decoded(content: bytes) -> str:
         return content.decode("cp1252", errors="replace")
 
 
-def parse(content: bytes, kind: Sequence[str]) -> ParsedFile:
-    """Return the table of a file, a `PROFILE` or a `CURVE`, as it is written, or an InputError."""
+def parse(content: bytes, kind: Sequence[str], columns: Sequence[int] | None = None) -> ParsedFile:
+    """Return the table of a file, a `PROFILE` or a `CURVE`, as it is written, or an InputError.
+
+    `columns` are the numbers of the two columns, from 1, where headings do not tell them.
+    """
     lines = _lines(_decoded(content))
     last = next((text for _, comment, text in reversed(lines) if text and not comment), "")
-    expected = f"no line holds two numbers, a {kind[0]} and a {kind[1]}"
-    errors = [(0, InputError(("table",), expected))]
-    # A table goes on to the last line: the dialects in which that line is a row come first.
-    columns = {dialect: _numbers(cells_of(last, dialect[0]), dialect[1]) for dialect in _DIALECTS}
-    for separator, form in sorted(_DIALECTS, key=lambda dialect: not columns[dialect]):
-        rows, heading, error = _rows(lines, separator, form, columns[separator, form])
-        if error:
-            errors.append((len(rows), error))
-        elif rows:
-            titles = titles_of(heading, separator, max(len(cells) for _, cells in rows), kind)
-            return _table(rows, titles, separator, kind)
-    # Of the dialects, the one in which most lines are numbers is probably meant.
-    raise max(errors[1:] or errors, key=lambda each: each[0])[1]
-
-
-def _lines(text: str) -> list[tuple[int, bool, str]]:
-    """Return the number of each line, whether it is a comment, and what it holds.
-
-    Marks of comments, quotes and repeated blanks are left out.
-    """
-
-    def unquoted(quoted: re.Match[str]) -> str:
-        # A comma within quotes is a decimal comma, or part of a name.
-        decimal = re.fullmatch(_COMMA, quoted[1].strip())
-        return re.sub("[,;]", "." if decimal else " ", quoted[1])
-
-    for pattern, replaced in _REPLACED:
-        text = re.sub(pattern, replaced, text)
-    lines = re.sub('"([^"\n]*)"', unquoted, text).split("\n")
-    return [
-        (number, line.startswith("#"), line.lstrip("#").strip(" ").rstrip(" \t;,"))
-        for number, line in enumerate(lines, 1)
-    ]
-
-
-def _numbers(cells: Sequence[str], form: re.Pattern[str]) -> list[int]:
-    """Return the indices of two or more numbers; none beside one with another decimal sign."""
-    found = [i for i, cell in enumerate(cells) if form.fullmatch(cell)]
-    if len(found) < len(cells) and any(
-        _NUMBERLIKE.fullmatch(cell) for i, cell in enumerate(cells) if i not in found
-    ):
-        return []
-    return found if len(found) > 1 else []
-
-
-def _rows(
-    lines: Sequence[tuple[int, bool, str]],
-    separator: str,
-    form: re.Pattern[str],
-    columns: list[int],
-) -> tuple[list[_Row], list[tuple[int, str]], InputError | None]:
-    """Return rows of numbers and words, the heading above, and the error at a line that is neither.
-
-    Parameters
-    ----------
-    columns : indices of the numbers in each row; empty for those in the first row.
-    """
-    rows: list[_Row] = []
-    heading = []
-    for number, comment, text in lines:
-        if comment or not text:
-            heading += [] if rows else [(number, text)]
-            continue
-        cells = cells_of(text, separator)
-        found = _numbers(cells, form)
-        if found and found == (columns or found):
-            columns = found
-            rows.append((number, cells))
-        elif rows or form.fullmatch(cells[0]):
-            count = len(columns) or max(len(cells), 2)
-            return rows, heading, refuse(number, f"{count} numbers are expected")
-        else:
-            heading.append((number, text))
-    return rows, heading, None
-
-
-def _table(
-    rows: Sequence[_Row], titles: list[Title], separator: str, kind: Sequence[str]
-) -> ParsedFile:
-    first, cells = rows[0]
-    numeric = [i for i, cell in enumerate(cells) if _NUMBERLIKE.fullmatch(cell)]
-    doubtful = separator == "," and len(cells) > 2 and not any(each.name for each in titles)
-    if doubtful and all(re.fullmatch(r"[-+]?\d+", row[i]) for _, row in rows for i in numeric):
-        detail = "a comma may separate columns or decimals; separate columns by ; or tabs"
-        raise refuse(first, detail)
-    taken, values = {}, []
-    for i, wanted in zip(places_of(titles, numeric, kind, first), kind, strict=True):
         title = titles[i]
         is_area = wanted == "radius" and _AREAS & set(re.split(r"[\W\d_]+", title.name.lower()))
         taken[i] = quantity = "area" if is_area else wanted
@@ -295,7 +211,7 @@ def _table(
             if bad.any():
                 raise refuse(rows[int(np.argmax(bad))][0], detail)
         values.append((np.sqrt(numbers / np.pi) if is_area else numbers).tolist())
-    if kind == PROFILE and not any(titles[i].name or titles[i].unit for i in taken):
+    if kind == PROFILE and not columns and not any(titles[i].name or titles[i].unit for i in taken):
         rise = np.ptp(values[1]) / max(np.abs(values[0]).max(), TINY)
         if rise > _STEEPEST:
             detail = (

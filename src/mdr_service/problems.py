@@ -8,6 +8,7 @@ from typing import Any, Final
 from pydantic import BaseModel, ValidationError
 
 from mdr_core.errors import AccuracyError, InputError
+from mdr_core.table_headings import ColumnsError
 from mdr_service import sentences
 
 MEDIA_TYPE: Final = "application/problem+json"
@@ -82,7 +83,9 @@ FAILURES: Final = (ServiceError, InputError, AccuracyError, ValidationError)
 def to_problem(error: Exception) -> ServiceError:
     """Return one of the `FAILURES` as a `ServiceError`."""
     if isinstance(error, InputError):
-        return invalid([(pointer(error.path), error.detail)])
+        columns = error.columns if isinstance(error, ColumnsError) else {}
+        choices = [(pointer(("columns", number)), name) for number, name in columns.items()]
+        return invalid([(pointer(error.path), error.detail), *choices])
     if isinstance(error, AccuracyError):
         return ServiceError(ACCURACY, str(error), [(pointer(error.path), str(error))])
     if isinstance(error, ValidationError):

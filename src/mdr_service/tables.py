@@ -14,9 +14,9 @@ KINDS: Final = {"profile": PROFILE, "curve": CURVE}
 _LISTS: Final = {"profile": ("r", "f"), "curve": ("indentation_depth", "normal_force")}
 
 
-def read(content: bytes, kind: str) -> bytes:
+def read(content: bytes, kind: str, columns: list[int] | None) -> bytes:
     """Return the response to a file, or raise InputError."""
-    table = parse(content, KINDS[kind])
+    table = parse(content, KINDS[kind], columns)
     units = [each.unit or (None, None, None) for each in table.titles]
     result: dict[str, Any] = {
         "columns": [

@@ -24,6 +24,7 @@ DESCRIBED = [
     "HistoryAnswer",
     "ImpactAnswer",
     "FitAnswer",
+    "LoopAnswer",
     "TangentialQuery",
 ]
 # Plain numbers that the page shows as quantities.
@@ -33,6 +34,7 @@ NUMBERS = {"cycles", "friction_coefficient", "rotation"} | ERRORS
 DISPLACEMENTS = re.compile(r"depth|displacement|retraction|slip$|profile|contact_point")
 OWN = {
     "e_star": "modulus",
+    "g_star": "modulus",
     "work_of_adhesion": "N/m",
     "rotation": "rad",
     "torque": "N·m",
@@ -40,6 +42,7 @@ OWN = {
 }
 SHOWN = {
     "force*length": "energy", "force/length": "stiffness", "length^3": "volume",
+    "length/force": "compliance",
     "length/time": "m/s", "time": "s", "force*time": "N·s",
 }  # fmt: skip
 

@@ -111,6 +111,15 @@ def test_limits_of_the_model_are_shown_in_one_line(visit: Visit) -> None:
         rf"yield strength above {strength:g} MPa[.]"
     )
     assert re.fullmatch(expected, line), line
+    # Johnson, section 4.2: 0.31 p_0 at the depth 0.48 a.
+    p_0 = 1.5 * 100 / (math.pi * a**2) / 1e6
+    axis = visit.page.locator("#accuracy p").nth(1).inner_text()
+    found = re.match(
+        r"On the axis .* is (\S+) MPa at the depth (\S+) mm, von Mises (\S+) MPa", axis
+    )
+    assert found, axis
+    shown = [float(each) for each in found.groups()]
+    assert shown == pytest.approx([0.31 * p_0, 0.48e3 * a, 0.62 * p_0], rel=1e-2, abs=0)
     # Without a load, and with adhesion, there are none.
     for case in ("?load=0", "?w=0.1"):
         visit.open(case)
@@ -243,10 +252,13 @@ def test_units_of_a_pasted_table_are_those_of_its_heading(visit: Visit) -> None:
     visit.page.select_option("#unit-r", "mm")
     visit.page.locator("#warnings").get_by_text("check the units of the table").wait_for()
     assert visit.page.input_value("#table").startswith("r [mm], f [nm]\n0, 0\n10000, 5\n")
+    # Of the two units the user has chosen the first alone.
+    visit.page.fill("#table", "\n".join(f"{r:.6g} {f:.6g}" for r, f in points))
+    problem = visit.page.locator("#problem-table")
+    problem.get_by_text("no heading names the unit of f: choose it").wait_for()
+    assert visit.state() == "unreadable"
     with visit.changing():
         visit.page.select_option("#unit-f", "µm")
-    pasted(visit, "\n".join(f"{r:.6g} {f:.6g}" for r, f in points))
-    note.get_by_text("choose them above").wait_for()
     assert visit.number("Contact radius a").startswith("0.186")
 
 
@@ -281,11 +293,17 @@ def test_area_function_fills_the_table(visit: Visit) -> None:
     assert note.inner_text() == "200 points; r = √(A/π) from the areas; units from the heading."
     assert visit.page.input_value("#unit-r") == "nm"
     assert visit.number("Contact radius a").startswith("63.66")
+    # With a term that makes A(h) negative at the end of the tip, from a height at which it holds.
+    visit.page.fill("#coefficients", f"{math.pi} -20")
+    visit.page.fill("#lowest-height", "20")
+    with visit.changing():
+        visit.page.click(".use-area")
+    assert visit.page.input_value("#table").splitlines()[2].startswith("20, ")
 
 
 def test_curve_from_an_instrument_is_fitted(visit: Visit, tmp_path: Path) -> None:
     visit.open("?tab=fit")
-    assert visit.number("Effective modulus E*").startswith("0.0107")
+    assert visit.number("Effective modulus E*").startswith("10.7")
     # 2 MPa under a ball of 10 mm, with contact at 3 µm, in nm and mN.
     depths = [250 * i for i in range(80)]
     forces = [4 / 3 * 2e6 * 0.1 * max(1e-9 * d - 3e-6, 0.0) ** 1.5 * 1e3 for d in depths]
@@ -297,7 +315,9 @@ def test_curve_from_an_instrument_is_fitted(visit: Visit, tmp_path: Path) -> Non
         visit.page.set_input_files("#curve-file", file)
     note = visit.page.locator("#curve-note").inner_text()
     assert note == "80 points; units from the heading."
-    assert visit.number("Effective modulus E*").startswith("0.002")
+    modulus = visit.number("Effective modulus E*").split()
+    assert float(modulus[0]) == pytest.approx(2, rel=1e-6, abs=0)
+    assert modulus[-1] == "MPa"
     assert visit.number("Contact point").startswith("3")
     # As a separation it is refused, until its sign is reversed.
     visit.page.click("#curve-fields .reverse")
@@ -313,6 +333,126 @@ def test_curve_from_an_instrument_is_fitted(visit: Visit, tmp_path: Path) -> Non
     with visit.changing():
         visit.page.click("#tab-press")
     assert visit.page.locator("#measured").is_hidden()
+
+
+def hertz(depths: np.ndarray, modulus: float, point: float) -> np.ndarray:
+    """Return the forces [N] of a ball of 10 mm over depths [m]."""
+    return 4 / 3 * modulus * 0.1 * np.maximum(depths - point, 0) ** 1.5
+
+
+def test_columns_segment_and_depths_of_a_curve_are_chosen(visit: Visit, tmp_path: Path) -> None:
+    visit.open("?tab=fit&e1=rigid&nu2=0.5&fitted=contact_point")
+    loading, unloading = np.linspace(-5e-6, 2e-5, 51), np.linspace(1.9e-5, -5e-6, 49)
+    depths = np.append(loading, unloading)
+    forces = np.append(hertz(loading, 2e6, 3e-6), hertz(unloading, 3e6, 5e-6))
+    rows = [
+        f"{i},{9 - i},{d:.9g},{f:.12g}" for i, (d, f) in enumerate(zip(depths, forces, strict=True))
+    ]
+    file = tmp_path / "curve.csv"
+    file.write_text("\n".join(["Point,Gauge,LVDT,Signal", *rows]), "utf-8")
+    visit.page.set_input_files("#curve-file", file)
+    columns = visit.page.locator("#curve-fields .columns select")
+    columns.nth(1).wait_for()
+    assert visit.state() == "unreadable"
+    columns.nth(0).select_option("3")
+    columns.nth(1).select_option("4")
+    # The file names no units.
+    problem = visit.page.locator("#problem-curve")
+    problem.get_by_text("no heading names the unit of d and F: choose it").wait_for()
+    visit.page.select_option("#unit-depth", "m")
+    problem.get_by_text("the unit of F").wait_for()
+    with visit.changing():
+        visit.page.select_option("#unit-force", "N")
+    visit.page.locator("#warnings").get_by_text("two branches").wait_for()
+    segments = visit.page.locator("#field-rows option").all_inner_texts()
+    assert segments == ["all points", "loading, rows 1 to 51", "unloading, rows 52 to 100"]
+    for option, modulus in (("0,50", 2.0), ("51,99", 3.0)):
+        with visit.changing():
+            visit.page.select_option("#field-rows", option)
+        fitted, unit = visit.number("Effective modulus E*").split(" ± ")[0], "MPa"
+        assert float(fitted) == pytest.approx(modulus, rel=1e-6, abs=0)
+        sample = visit.number("Young's modulus of the sample")
+        assert float(sample.split()[0]) == pytest.approx(0.75 * modulus, rel=1e-6, abs=0)
+        assert sample.endswith(unit)
+    # Dragging over the chart takes the depths between, and a link keeps the choice.
+    chart = visit.page.locator("figure", has_text="Force against depth").locator(".nsewdrag").first
+    box = chart.bounding_box()
+    assert box is not None
+    with visit.changing():
+        visit.page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 30)
+        visit.page.mouse.down()
+        visit.page.mouse.move(box["x"] + 0.9 * box["width"], box["y"] + 60, steps=5)
+        visit.page.mouse.up()
+    assert "from=" in visit.page.url
+    least = visit.page.input_value("#field-from")
+    assert 0 < float(least) < float(visit.page.input_value("#field-to"))
+    sent = json.loads(request(visit, "Fit"))["indentation_depth"]
+    # In the units of the file.
+    assert float(least) <= min(sent) * (1 + 1e-9)
+    assert len(sent) < 49
+    url = visit.page.url
+    visit.open(url.removeprefix(visit.address))
+    assert json.loads(request(visit, "Fit"))["indentation_depth"] == sent
+
+
+def mindlin_loop(rig: float, part: float = 1.5) -> tuple[np.ndarray, np.ndarray]:
+    """Return a loop of a ball of 10 mm under 10 N, for E* = 2 GPa, G* = 1.6 GPa and mu = 0.3.
+
+    The amplitude of the contact is a `part` of that of full slip.
+    """
+    depth = (7.5 / (2e9 * 0.1)) ** (2 / 3)
+    whole = 0.3 * 2 / 1.6 * depth
+    most = part * whole
+    u = most * np.cos(np.linspace(0, 4, 161) * np.pi)
+    way = np.where(np.arange(161) // 40 % 2, 1, -1)
+    first = [3 * (1 - np.maximum(1 - x / whole, 0) ** 1.5) for x in ((most + way * u) / 2, most)]
+    force = way * (2 * first[0] - first[1])
+    return u + rig * force, force
+
+
+@pytest.mark.parametrize("rig", ["", "1"])
+def test_loop_tells_friction_and_shear_modulus(visit: Visit, rig: str) -> None:
+    visit.open("?tab=fit&kind=paraboloid&radius=0.01&e1=rigid&e2=1.5e9&nu2=0.5&load=10")
+    with visit.changing():
+        visit.page.select_option("#field-measured", "loop")
+    assert visit.page.inner_text("#lead").startswith("A loop of friction")
+    u, force = mindlin_loop(1e-6)
+    force += np.random.default_rng(2).normal(0, 0.01, force.size)
+    rows = [f"{x * 1e6:.9g},{f:.9g}" for x, f in zip(u, force, strict=True)]
+    with visit.changing():
+        visit.page.fill("#curve", "\n".join(["u [µm],F [N]", *rows]))
+    if rig:
+        visit.fill("rig", rig)
+    ends = u[:81], force[:81]
+    energy = 1e6 * abs(np.trapezoid(ends[1], ends[0]))
+    expected = {
+        "Effective shear modulus G*": (1.6, "GPa"),
+        "Coefficient of friction µ": (0.3, ""),
+        "Dissipated energy per cycle": (energy, "µJ"),
+        **({} if rig else {"Compliance of the rig": (1.0, "µm/N")}),
+    }
+    for label, (value, unit) in expected.items():
+        shown, error = visit.number(label).split(" ± ")
+        spread = float(error.split()[0])
+        assert error.endswith(unit)
+        # The energy of the trapezoidal rule has the noise of single points, too.
+        assert abs(float(shown) - value) < 4 * spread + 1e-3 * value, label
+        assert 0 < spread < 0.1 * value
+    assert visit.page.inner_text("#warnings") == ""
+    # A switch back finds the curve as it was.
+    with visit.changing():
+        visit.page.select_option("#field-measured", "curve")
+    assert visit.number("Effective modulus E*").startswith("10.7")
+    with visit.changing():
+        visit.page.select_option("#field-measured", "loop")
+    assert visit.number("Coefficient of friction µ").startswith("0.")
+    # Partial slip does not tell a rig from the contact.
+    if not rig:
+        u, force = mindlin_loop(1e-6, 0.4)
+        force += np.random.default_rng(3).normal(0, 0.03, force.size)
+        rows = [f"{x * 1e6:.9g},{f:.9g}" for x, f in zip(u, force, strict=True)]
+        visit.page.fill("#curve", "\n".join(["u [µm],F [N]", *rows]))
+        visit.page.locator("#problem").get_by_text("partial slip cannot tell").wait_for()
 
 
 def test_line_of_a_table_that_cannot_be_used_is_named(visit: Visit) -> None:
@@ -522,7 +662,9 @@ def test_strength_follows_the_material(visit: Visit) -> None:
     visit.fill("yield2", "500")
     with visit.changing():
         visit.page.select_option("#field-material-1", "Structural steel")
-    # The weaker of the two.
+    # The weaker of the two, beside bearing steel too.
+    with visit.changing():
+        visit.page.select_option("#field-material-2", "Bearing steel 52100")
     assert visit.page.input_value("#field-body") == "1"
     assert visit.page.get_attribute("#field-yield1", "placeholder") == "250"
     # The moduli of no listed material leave the strength open.
@@ -624,6 +766,7 @@ def test_no_text_of_a_chart_is_cut(visit: Visit, tab: str) -> None:
         for kind in ("paraboloid", "flat_punch", "cone", *tables):
             visit.open(f"?tab={tab}&kind={kind}&mass=0.03")
             assert titles_outside(visit.page) == [], (width, kind)
+            assert values_outside(visit.page) == [], (width, kind)
 
 
 def request(visit: Visit, name: str) -> str:
@@ -710,6 +853,25 @@ def titles_outside(page: Page) -> list[str]:
                     || top < box.top - 1 || bottom > box.bottom + 1);
             }).map(({ textContent }) => textContent);
         })"""
+    )
+    return outside
+
+
+def values_outside(page: Page) -> list[str]:
+    """Return the titles of the charts that cut a value without a note of its peak."""
+    outside: list[str] = page.evaluate(
+        """[...document.querySelectorAll(".plot")].filter((plot) => {
+            const { xaxis, yaxis, annotations = [] } = plot._fullLayout;
+            if (annotations.some(({ text }) => /peak|∞/.test(text))) return false;
+            const inside = ({ range, type }, value) => {
+                const at = type === "log" ? Math.log10(value) : value;
+                const [low, high] = [Math.min(...range), Math.max(...range)];
+                const margin = 1e-9 * (high - low);
+                return at >= low - margin && at <= high + margin;
+            };
+            return plot.data.filter(({ z }) => !z).some(({ x, y }) => [...x].some((at, i) =>
+                Number.isFinite(y[i]) && inside(xaxis, at) && !inside(yaxis, y[i])));
+        }).map((plot) => plot.getAttribute("aria-label"))"""
     )
     return outside
 

@@ -18,6 +18,10 @@ from tests.contract.page_quantities import quantities
 TABLES = Path(__file__).parents[1] / "data" / "tables"
 
 
+# Inputs that may be empty.
+OPTIONAL = ["uncertainty", "thickness", "mass", "density", "yield1", "yield2", "rig", "from", "to"]
+
+
 def test_forged_addresses_yield_offered_words_and_finite_numbers() -> None:
     addresses = list(forged(20_000, seed=2))
     parts = [urlsplit(address) for address in addresses]
@@ -30,9 +34,19 @@ def test_forged_addresses_yield_offered_words_and_finite_numbers() -> None:
         assert "error" not in result, address
         table, curve = (result["inputs"].pop(name) for name in ("table", "curve"))
         assert path.fullmatch(result["inputs"].pop("path")), address
-        for name in ("breaks", "loads"):
+        for name in ("breaks", "loads", "rows"):
             assert numbers.fullmatch(result["inputs"].pop(name, "")), address
-        for optional in ("uncertainty", "thickness", "mass", "density", "yield1", "yield2"):
+        for optional in (
+            "uncertainty",
+            "thickness",
+            "mass",
+            "density",
+            "yield1",
+            "yield2",
+            "rig",
+            "from",
+            "to",
+        ):
             given = result["inputs"].pop(optional, "")
             assert given == "" or math.isfinite(given), address
         held = [*result["inputs"].values()]
@@ -105,9 +119,10 @@ def test_numbers_are_shown_in_units_of_their_size(
 @pytest.mark.parametrize(
     ("value", "error", "shown"),
     [
-        (1.0697e7, 1.23e4, "0.010697 ± 0.000012 GPa"),
+        (1.0697e7, 1.23e4, "10.697 ± 0.012 MPa"),
         (2.1e11, 4e9, "210.0 ± 4.0 GPa"),
         (5e9, 3e11, "5 ± 300 GPa"),
+        (200.0, 3.0, "200.0 ± 3.0 Pa"),
     ],
 )
 def test_digits_follow_the_standard_error(value: float, error: float, shown: str) -> None:

@@ -98,6 +98,26 @@ def test_energy_is_the_area_of_the_loop() -> None:
         assert found.dissipated_energy == pytest.approx(area, rel=1e-5, abs=0)
 
 
+@pytest.mark.parametrize("rig", [None, 0.5])
+def test_errors_of_the_energy_are_those_of_its_standard_deviation(rig: float | None) -> None:
+    random = np.random.default_rng(5)
+    contact, u, force = measured(Paraboloid(0.01), 1.5)
+    compliance = 0.5 / (2 * G_STAR * float(contact.contact_radius))
+    fine = measured(Paraboloid(0.01), 1.5, 20001)
+    exact = np.trapezoid(fine[2], fine[1]) / 2
+    deviations = []
+    for _ in range(100):
+        found = hysteresis.solve(
+            contact,
+            tangential_displacement=u + compliance * force,
+            tangential_force=force + random.normal(0.0, 0.01 * force.max(), force.size),
+            rig_compliance=None if rig is None else compliance,
+        )
+        deviations.append((found.dissipated_energy - exact) / found.dissipated_energy_error)
+    # The mean square of 100 normal numbers has a standard deviation of 0.14.
+    assert 0.58 < np.mean(np.square(deviations)) < 1.42
+
+
 def test_residuals_that_are_not_noise_are_a_warning() -> None:
     contact, u, force = measured(Paraboloid(0.01), 1.5, 161)
     random, sigma = np.random.default_rng(8), 0.01 * force.max()

@@ -8,9 +8,9 @@ from tests.conftest import Client
 CSV = {"content-type": "text/csv"}
 
 
-def read(client: Client, content: str | bytes, kind: str = "curve") -> tuple[int, dict]:
+def read(client: Client, content: str | bytes, query: str = "curve") -> tuple[int, dict]:
     body = content.encode() if isinstance(content, str) else content
-    response = client.request("POST", f"/v1/table?as={kind}", content=body, headers=CSV)
+    response = client.request("POST", f"/v1/table?as={query}", content=body, headers=CSV)
     return response.status_code, response.json()
 
 
@@ -29,6 +29,20 @@ def test_curve_has_columns_units_and_segments(client: Client) -> None:
         {"kind": "loading", "first": 0, "last": 2},
         {"kind": "unloading", "first": 3, "last": 4},
     ]
+
+
+def test_columns_that_are_left_open_are_listed_and_can_be_chosen(client: Client) -> None:
+    text = "Point,Flag,Load,Gauge,LVDT\n1,a,2,3,4\n2,a,4,6,8\n"
+    status, document = read(client, text)
+    assert status == 422
+    listed = [(each["pointer"], each["detail"]) for each in document["errors"][1:]]
+    names = {1: "Point", 3: "Load", 4: "Gauge", 5: "LVDT"}
+    assert listed == [(f"/columns/{number}", name) for number, name in names.items()]
+    status, document = read(client, text, "curve&columns=5,3")
+    assert status == 200
+    assert (document["indentation_depth"], document["normal_force"]) == ([4, 8], [2, 4])
+    for wrong in ("2,3", "5,9", "0,1", "1", "x"):
+        assert read(client, text, f"curve&columns={wrong}")[0] == 422
 
 
 def test_profile_without_a_heading_names_no_unit(client: Client) -> None:

@@ -22,6 +22,7 @@ _DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("u
 # Media type of the text format of Prometheus.
 _METRICS: Final = "text/plain; version=0.0.4; charset=utf-8"
 _AS: Final = "`profile` (radius and height) or `curve` (depth and force)"
+_COLUMNS: Final = "numbers of the two columns, from 1, where headings do not tell them: 2,3"
 _EXAMPLE: Final = {"schema": {"type": "string"}, "example": "r [mm];f [µm]\n0;0\n0,1;0,5"}
 _FILE: Final = {"requestBody": {"required": True, "content": {"text/csv": _EXAMPLE}}}
 _OK: Final = Health(status="ok", version=__version__, compiled=COMPILED)
@@ -63,16 +64,22 @@ async def list_profiles() -> Catalogue:
     openapi_extra=_FILE,
 )
 async def read_table(
-    request: Request, kind: Annotated[str, Query(alias="as", description=_AS)] = "profile"
+    request: Request,
+    kind: Annotated[str, Query(alias="as", description=_AS)] = "profile",
+    columns: Annotated[
+        str | None, Query(pattern=r"^[1-9]\d{0,3},[1-9]\d{0,3}$", description=_COLUMNS)
+    ] = None,
 ) -> Response:
     """Read a text file with headings, units, decimal commas and further columns.
 
-    Nothing is guessed: what is not understood is rejected, with its line and the remedy.
+    Nothing is guessed: what is not understood is rejected, with its line and the remedy; `errors`
+    lists the columns where they are left open.
     """
     if kind not in tables.KINDS:
         raise problems.invalid([("/as", f"must be one of {', '.join(tables.KINDS)}")])
     content = await read_body(request, any_type=True)
-    answer = await request.app.state.compute.run_in_process(tables.read, content, kind)
+    places = [int(number) for number in columns.split(",")] if columns else None
+    answer = await request.app.state.compute.run_in_process(tables.read, content, kind, places)
     return Response(answer, media_type=JSON)
 
 

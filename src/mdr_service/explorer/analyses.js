@@ -1,10 +1,13 @@
 // The analyses and the fields that they add to the form.
 
-import { controls, NORMAL, RIGID, TANGENTIAL } from "./inputs.js";
+import { controls, hasLoop, NORMAL, RIGID, TANGENTIAL } from "./inputs.js";
 import { densityOf, massOf, strengthOf } from "./materials.js";
 import { QUANTITIES } from "./quantities.js";
 import { shown } from "./units.js";
-import { solveCycle, solveFit, solveImpact, solvePress, solvePush, solveStress, solveWear } from "./results.js";
+import { solveStress, solveWear } from "./field_results.js";
+import { solveFit } from "./fit_results.js";
+import { solveCycle, solveImpact, solvePush } from "./friction_results.js";
+import { solvePress } from "./press_results.js";
 
 const SHARE = ["Share of µF_N", "1"];
 
@@ -33,7 +36,7 @@ export function bodyFields(inputs, i) {
 
 /** Return the fields of the load of the inputs. */
 export function loadFields(inputs) {
-  if (["cycle", "impact", "fit"].includes(inputs.tab)) return [];
+  if (["cycle", "impact"].includes(inputs.tab) || (inputs.tab === "fit" && !hasLoop(inputs))) return [];
   const choices = choicesOf(controls(inputs.tab));
   const [label, dimension] = QUANTITIES[inputs.control];
   return [
@@ -61,8 +64,37 @@ function derived(inputs, key, label, dimension, value) {
 
 /** Return the field of the load that a list of the user's own replaces, or undefined. */
 export function listedField(inputs) {
+  if (inputs.tab === "fit") return undefined;
   if (inputs.tab === "impact") return ANALYSES.impact.fields(inputs).find(({ key }) => key === "approach");
   return loadFields(inputs).find(({ key }) => key === "load");
+}
+
+/** Which measurement is fitted. */
+export const MEASURED = {
+  key: "measured", label: "Measured", choices: [["curve", "curve of force"], ["loop", "loop of friction"]],
+};
+
+/** Return the fields of a measured curve or loop: which of its points are fitted. */
+export function curveFields(inputs) {
+  if (hasLoop(inputs)) return [];
+  const { segments = [] } = inputs.curve;
+  const words = (row) => `rows ${row.split(",").map((each) => Number(each) + 1).join(" to ")}`;
+  const branches = segments.map(({ kind, first, last }) => [`${first},${last}`, `${kind}, ${words(`${first},${last}`)}`]);
+  // A link holds rows without the direction of the depth.
+  const own = inputs.rows && !branches.some(([rows]) => rows === inputs.rows) ? [[inputs.rows, words(inputs.rows)]] : [];
+  const end = (key, label, placeholder) => ({ key, label, dimension: "displacement", optional: true, placeholder });
+  const choices = [["", "all points"], ...branches, ...own];
+  return [
+    ...(choices.length > 2 || own.length ? [{ key: "rows", label: "Segment", choices }] : []),
+    end("from", "Depths from", "the first"), end("to", "Depths up to", "the last"),
+  ];
+}
+
+const LOOP = "A loop of friction over displacement was measured under a constant normal load: which shear modulus and coefficient of friction has the contact, and how much energy does a cycle take? ± is a standard error.";
+
+/** Return the question that the page answers. */
+export function leadOf(inputs) {
+  return hasLoop(inputs) ? LOOP : ANALYSES[inputs.tab].lead;
 }
 
 export const ANALYSES = {
@@ -128,7 +160,9 @@ export const ANALYSES = {
   fit: {
     title: "Fit",
     lead: "A curve of force over depth was measured: which modulus has the contact, and where does it begin? ± is a standard error.",
-    fields: () => [{
+    fields: (inputs) => hasLoop(inputs) ? [{
+      key: "rig", label: "Compliance of the rig in series", dimension: "compliance", optional: true, placeholder: "fitted",
+    }] : [{ key: "nu2", label: "Poisson’s ratio of the sample", dimension: "1", range: [0, 0.5] }, {
       key: "fitted", label: "Fitted beside E*",
       choices: [
         ["none", "nothing"], ["contact_point", "contact point"],

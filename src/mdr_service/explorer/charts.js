@@ -171,6 +171,7 @@ function layout(spec, inputs, colours, { width, height }) {
     margin: { l: 56, r: 16, t: 24, b: 48 },
     showlegend: !spec.map && spec.traces.length > 1,
     legend: { orientation: "h", x: 0, y: 1.09, yanchor: "bottom" },
+    dragmode: spec.selects ? "select" : "zoom", selectdirection: "h", selections: [],
     hovermode: spec.map ? "closest" : "x unified",
     hoverlabel: { bgcolor: colours.paper, font: { color: colours.ink } },
     xaxis: {
@@ -234,7 +235,7 @@ function save(figure, format) {
   Plotly.downloadImage(figure.plot, { format, filename, width: 800, height: 500, scale: format === "png" ? 2 : 1 });
 }
 
-function create(spec, showRequest) {
+function create(spec, { showRequest }) {
   const figure = { plot: make("div", { className: "plot", role: "img" }) };
   const button = (text, act) => makeButton(text, act, { "aria-label": `${text} of “${spec.title}”` });
   const buttons = make("span", { className: "save" },
@@ -255,7 +256,11 @@ function fillTable(figure) {
 }
 
 /** Show the radius under the cursor in every chart against the radius. */
-function link(figure) {
+function link(figure, { select }) {
+  figure.plot.on("plotly_selected", (event) => {
+    const factor = unit(figure.spec.x[1], figure.inputs, figure.spec.x[2]).factor;
+    if (event?.range) select(event.range.x.map((x) => x * factor).sort((a, b) => a - b));
+  });
   const others = () => [...figures.values()].filter((other) => other !== figure && other.spec.linked);
   const forOthers = (act) => {
     if (linking || !figure.spec.linked) return;
@@ -287,9 +292,10 @@ export function redraw() {
 /**
  * Draw the charts of a response, reusing those with the same title.
  *
- * `showRequest` is called with the name of a chart's request.
+ * `actions.showRequest` is called with the name of a chart's request, `actions.select` with the SI
+ * range over which the user drags in a chart that `selects`.
  */
-export async function draw(container, specs, inputs, showRequest) {
+export async function draw(container, specs, inputs, actions) {
   await plotlyLoaded;
   for (const [title, figure] of figures) {
     if (specs.some((spec) => spec.title === title)) continue;
@@ -299,7 +305,7 @@ export async function draw(container, specs, inputs, showRequest) {
   }
   for (const spec of specs.map(sized)) {
     const known = figures.get(spec.title);
-    const figure = known ?? create(spec, showRequest);
+    const figure = known ?? create(spec, actions);
     Object.assign(figure, { spec, inputs });
     figure.element.className = `${spec.size ?? ""} ${spec.map ? "map" : ""}`.trim();
     figure.plot.setAttribute("aria-label", `${spec.title}: ${spec.y[0]} against ${spec.x[0]}`);
@@ -308,7 +314,7 @@ export async function draw(container, specs, inputs, showRequest) {
     // In the order of the description, whatever was there before.
     container.append(figure.element);
     await plot(figure, { autosize: true });
-    if (!known) link(figure);
+    if (!known) link(figure, actions);
     figures.set(spec.title, figure);
     fillTable(figure);
   }

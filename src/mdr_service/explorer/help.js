@@ -28,6 +28,11 @@ export const HELP = {
   wear: "Worn volume per energy that friction dissipates, as measured for this pair of materials.",
   cycles: "Number of oscillations after which the profile is shown.",
   fitted: "Quantities that are determined from the curve together with E*.",
+  measured: "Which measurement the two columns hold; each gives its own parameters.",
+  rig: "Displacement of the rig per force; 0 if the displacement was measured at the contact. Fitted, it needs full slip.",
+  rows: "Branch of the curve, between turning points of its depth.",
+  from: "Least depth that is fitted, as the file counts it; or drag over the chart.",
+  to: "Largest depth that is fitted, as the file counts it; or drag over the chart.",
   uncertainty: "Standard uncertainty of the heights; empty: by the scatter of the points.",
   breaks: "Radii with blanks between them, such as the edge of a flat.",
 };

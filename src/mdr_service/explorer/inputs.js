@@ -1,6 +1,6 @@
 // The inputs: one flat object of numbers and words in SI units, and its form in the address.
 
-import { KINDS, measuredBall, measuredCurve, wireProfile } from "./shapes.js";
+import { KINDS, measuredBall, measuredCurve, measuredLoop, wireProfile } from "./shapes.js";
 import { CURVE, PROFILE } from "./table_reader.js";
 import { BASE_UNITS, numberOf } from "./units.js";
 
@@ -17,7 +17,7 @@ const DEFAULTS = {
   mu: 0.3, push: "ratio", shear: "none", amount: 0.7,
   normal: "normal_force", tangential: "tangential_force",
   path: "100,0;100,20;100,-20;100,20",
-  fitted: "contact_point", mass: "", density: "", share: 2 / 7, approach: 0.1, along: 0.05,
+  measured: "curve", rig: "", rows: "", from: "", to: "", fitted: "contact_point", mass: "", density: "", share: 2 / 7, approach: 0.1, along: 0.05,
   body: 1, yield1: "", yield2: "", loads: "",
   oscillation: "tangential_force", amplitude: 20, wear: 1e-13, cycles: 1e5,
   ul: "mm", ud: "µm", uf: "N", up: "MPa", um: "GPa",
@@ -31,7 +31,7 @@ const CHOICES = {
   tab: TABS, fitted: ["none", ...FITTED], kind: Object.keys(KINDS), push: ["ratio", ...TANGENTIAL],
   shear: ["none", "ratio", ...TANGENTIAL],
   normal: NORMAL, tangential: TANGENTIAL, oscillation: TANGENTIAL, body: [1, 2],
-  base: ["bonded", "frictionless"],
+  base: ["bonded", "frictionless"], measured: ["curve", "loop"],
   ...Object.fromEntries(Object.values(BASE_UNITS).map(({ key, factors }) => [key, Object.keys(factors)])),
 };
 const optional = (text) => (text === "" ? text : number(text));
@@ -39,8 +39,10 @@ const optional = (text) => (text === "" ? text : number(text));
 const OTHERS = {
   loads: (text) => (text === "" || text.split(",").every(isNumber) ? text : undefined),
   path: (text) => (pathPoints({ path: text }).every(isPoint) ? text : undefined),
+  rows: (text) => (/^(\d+,\d+)?$/.test(text) ? text : undefined),
   breaks: (text) => (text === "" || text.split(",").every(isNumber) ? text : undefined),
   uncertainty: optional, thickness: optional, mass: optional, density: optional, yield1: optional, yield2: optional,
+  rig: optional, from: optional, to: optional,
   e1: (text) => (text === RIGID ? text : number(text)),
   e2: (text) => (text === RIGID ? text : number(text)),
 };
@@ -51,12 +53,22 @@ const isPoint = (point) => point.length === 2 && !point.some(Number.isNaN);
 
 /** Return the quantities by which the load of an analysis can be prescribed. */
 export function controls(tab) {
-  return tab === "wear" ? NORMAL : [...NORMAL, "contact_radius"];
+  return ["wear", "fit"].includes(tab) ? NORMAL : [...NORMAL, "contact_radius"];
 }
 
 /** Return the inputs of a first visit. */
 export function defaultInputs() {
   return { ...DEFAULTS, ...KINDS[DEFAULTS.kind].fields, table: measuredBall(), curve: measuredCurve() };
+}
+
+/** Return the example of a measured curve or loop. */
+export function exampleOf(measured) {
+  return measured === "loop" ? measuredLoop() : measuredCurve();
+}
+
+/** Return whether the measurement is a hysteresis loop. */
+export function hasLoop(inputs) {
+  return inputs.tab === "fit" && inputs.measured === "loop";
 }
 
 /** Return the value of an input that a text holds, or undefined if it is none that the page offers. */
@@ -91,6 +103,7 @@ export function fromAddress(search, hash) {
   take("kind");
   Object.assign(inputs, KINDS[inputs.kind].fields);
   Object.keys(inputs).filter((key) => !["tab", "kind", "table", "curve"].includes(key)).forEach(take);
+  inputs.curve = exampleOf(inputs.measured);
   for (const [key, kind] of [["table", PROFILE], ["curve", CURVE]]) {
     if (COLUMNS[key].some((name) => fragment.has(name))) set(key, tableOf(fragment, COLUMNS[key], kind));
   }
@@ -142,4 +155,34 @@ export function basics(inputs) {
   const { thickness, base } = inputs;
   const body = hasLayer(inputs) ? { layer: { thickness, base } } : { body_thickness: thickness };
   return { profile: wireProfile(inputs), material: { bodies, ...(thickness === "" ? {} : body) } };
+}
+
+/**
+ * Return the inputs after the choice of a `value` for `key`, with the state of the contact that is
+ * `known` by its quantities where another one is chosen to give it.
+ */
+export function withChoice(given, key, value, known) {
+  const inputs = { ...given, [key]: value };
+  if (key === "control" && known[value] > 0) inputs.load = known[value];
+  if (key === "push" || key === "shear") {
+    const share = known.tangential_force / (inputs.mu * known.normal_force);
+    inputs.amount = value === "ratio" ? Math.min(share || 0.7, 1) : known[value] || inputs.load / 10;
+  }
+  if (key === "oscillation") {
+    inputs.amplitude = value === "tangential_force" ? defaultInputs().amplitude : 2e-7;
+  }
+  if (key === "normal") {
+    inputs.path = rescaled(inputs, 0, Math.max(known[value], 0) || (value === "normal_force" ? 100 : 2e-6));
+  }
+  if (key === "tangential") {
+    inputs.path = rescaled(inputs, 1, Math.abs(known[value]) || (value === "tangential_force" ? 20 : 4e-7));
+  }
+  return inputs;
+}
+
+function rescaled(inputs, column, largest) {
+  const points = pathPoints(inputs);
+  const size = Math.max(...points.map((point) => Math.abs(point[column]))) || 1;
+  for (const point of points) point[column] = Number(((point[column] / size) * largest).toPrecision(6));
+  return points.map((point) => point.join(",")).join(";");
 }

@@ -1,30 +1,30 @@
 // The page: inputs -> form -> requests -> numbers and charts -> address.
 
 import { draw, redraw } from "./charts.js";
-import { make, makeButton } from "./dom.js";
-import { choiceRow, mark, numberRow, optionalRow } from "./form.js";
+import { makeButton } from "./dom.js";
+import { choiceRow, numberRow, optionalRow } from "./form.js";
 import { showEditor } from "./load_path.js";
-import { MATERIALS, materialOf, strengthOf } from "./materials.js";
-import { inWords } from "./messages.js";
-import { bodyFields, listedField, loadFields, ANALYSES, BASE, BODIES, THICKNESS } from "./analyses.js";
-import { copied, download, fileName, inShownUnits, newestWins, query, queryCsv, Refusal, source } from "./requests.js";
-import { defaultInputs, fromAddress, hasLayer, pathPoints, RIGID, TABS, toAddress, withKind } from "./inputs.js";
-import { QUANTITIES } from "./quantities.js";
+import { MATERIALS, materialOf, weakest } from "./materials.js";
+import { bodyFields, curveFields, leadOf, listedField, loadFields, ANALYSES, BASE, BODIES, MEASURED, THICKNESS } from "./analyses.js";
+import { newestWins, query, Refusal } from "./requests.js";
+import { controls, defaultInputs, exampleOf, fromAddress, hasLoop, pathPoints, RIGID, TABS, toAddress, withChoice, withKind } from "./inputs.js";
+import { noteOnUnits, showAccuracy, showNumbers, showProblem } from "./outcome.js";
 import { showReport } from "./report.js";
-import { noteOnUnits } from "./results.js";
 import { KINDS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
 import { ownLoads } from "./own_loads.js";
 import { showSketch } from "./sketch.js";
 import { tableField } from "./table_field.js";
 import { CURVE, PROFILE } from "./table_reader.js";
-import { BASE_UNITS, format, quantity, uncertain } from "./units.js";
+import { connectExport, showRequest, showRequests } from "./take_away.js";
+import { BASE_UNITS } from "./units.js";
 
 const $ = (selector) => document.querySelector(selector);
 let inputs;
 let catalogue = {};
-let requests = [];
 // Error that is shown, or null.
 let problem = null;
+// The curve and the loop that were last shown.
+const measurements = {};
 let last = null;
 let version = "";
 // Fields for tables, by the key of their input.
@@ -96,41 +96,26 @@ function change(key, value) {
   refresh();
 }
 
+/** Show the case with another measured curve or loop, all of whose points are fitted, in its units. */
+function takeCurve(curve) {
+  unreadable.delete("curve");
+  const [ud, uf] = curve.units;
+  show({ ...inputs, curve, rows: "", from: "", to: "", ud, uf });
+}
+
 function fail(key) {
   unreadable.add(key);
   refresh();
 }
 
 function choose(key, value) {
-  inputs = { ...inputs, [key]: value };
-  keepLoad(key, value);
-  show(inputs);
-}
-
-/** Keep the state of the contact when another quantity is chosen to give it. */
-function keepLoad(key, value) {
-  const known = last?.known ?? {};
-  if (key === "control" && known[value] > 0) inputs.load = known[value];
-  if (key === "push" || key === "shear") {
-    const share = known.tangential_force / (inputs.mu * known.normal_force);
-    inputs.amount = value === "ratio" ? Math.min(share || 0.7, 1) : known[value] || inputs.load / 10;
+  if (key === "measured") {
+    measurements[inputs.measured] = inputs.curve;
+    inputs = { ...inputs, measured: value };
+    unreadable.delete("curve");
+    return takeCurve(measurements[value] ?? exampleOf(value));
   }
-  if (key === "oscillation") {
-    inputs.amplitude = value === "tangential_force" ? defaultInputs().amplitude : 2e-7;
-  }
-  if (key === "normal") {
-    inputs.path = rescaled(0, Math.max(known[value], 0) || (value === "normal_force" ? 100 : 2e-6));
-  }
-  if (key === "tangential") {
-    inputs.path = rescaled(1, Math.abs(known[value]) || (value === "tangential_force" ? 20 : 4e-7));
-  }
-}
-
-function rescaled(column, largest) {
-  const points = pathPoints(inputs);
-  const size = Math.max(...points.map((point) => Math.abs(point[column]))) || 1;
-  for (const point of points) point[column] = Number(((point[column] / size) * largest).toPrecision(6));
-  return points.map((point) => point.join(",")).join(";");
+  show(withChoice(inputs, key, value, last?.known ?? {}));
 }
 
 function row(field, reference) {
@@ -174,15 +159,6 @@ function materialRow(i) {
   });
 }
 
-/** Return the elastic body of the lower yield strength, if both are known, else the one that is chosen. */
-function weakest(next) {
-  const rigid = [1, 2].find((i) => next[`e${i}`] === RIGID);
-  if (rigid) return 3 - rigid;
-  const [first, second] = [1, 2].map((i) => strengthOf(next, i));
-  if (first === undefined || second === undefined || first === second) return next.body;
-  return first < second ? 1 : 2;
-}
-
 /** Show how the layer is held where there is one. */
 function showBase() {
   $(".field[data-key=base]")?.toggleAttribute("hidden", inputs.thickness === "");
@@ -192,12 +168,21 @@ function showForm() {
   const analysis = ANALYSES[inputs.tab];
   $("#kind").value = inputs.kind;
   $("#formula").textContent = `f(r) = ${OWN_FORMULAS[inputs.kind] ?? catalogue[inputs.kind]?.formula ?? "…"}`;
-  for (const [key, field] of Object.entries(tables)) field.show(inputs[key], unreadable.has(key));
+  for (const [key, field] of Object.entries(tables)) {
+    field.show(inputs[key], unreadable.has(key), key === "curve" ? [hasLoop(inputs) ? "u" : "d", "F"] : undefined);
+  }
   $("#table-fields").hidden = !isUsed("table");
   $("#measured").hidden = !isUsed("curve");
   fill($("#profile-fields"), rows(profileFields(), KINDS[inputs.kind].fields));
-  // A fit tells the modulus.
-  const bodies = inputs.tab === "fit" ? [] : [1, 2];
+  const isLoop = hasLoop(inputs);
+  $("#curve-label").textContent = isLoop ? "Displacement u and friction F, in the order of time" : "Depth d and force F";
+  $("[for=unit-depth]").textContent = `${isLoop ? "u" : "d"} in`;
+  $("#curve-fields .reverse").hidden = isLoop;
+  fill($("#measured-kind"), rows([MEASURED]));
+  fill($("#curve-choice"), rows(curveFields(inputs)));
+  $("#curve-choice").hidden = isLoop;
+  // A fitted curve tells the modulus of body 2.
+  const bodies = inputs.tab === "fit" && !isLoop ? [1] : [1, 2];
   const layer = inputs.tab === "press" ? [THICKNESS, BASE] : [THICKNESS];
   fill($("#bodies"), [...bodies.flatMap((i) => [materialRow(i), ...rows(bodyFields(inputs, i))]), ...rows(layer)]);
   showBase();
@@ -213,124 +198,26 @@ function showForm() {
     // On a narrow screen the tabs scroll.
     if (selected) tab.parentElement.scrollLeft = tab.offsetLeft - tab.parentElement.offsetLeft - 80;
   });
-  $("#lead").textContent = analysis.lead;
+  $("#lead").textContent = leadOf(inputs);
 }
 
 // Results ----------------------------------------------------------------------------------------
-
-function showNumbers(numbers) {
-  const entries = () => numbers.map(([label, value, dimension, error]) => {
-    const text = typeof value === "string" ? value
-      : error === undefined ? quantity(value, dimension, inputs) : uncertain(value, error, dimension, inputs);
-    return make("div", {}, make("dt", {}, label), make("dd", {}, text));
-  });
-  $("#numbers").replaceChildren(...entries());
-  $("#main-numbers").replaceChildren(...entries().slice(0, 2));
-}
 
 /** Return the labels of the fields of the profile, by their names in requests. */
 function labels() {
   return Object.fromEntries(profileFields().map(({ key, label }) => [key, label]));
 }
 
-function showAccuracy({ responses, limits = "" }, notes) {
-  const error = Math.max(...responses.map((response) => response.error_estimate));
-  const methods = [...new Set(responses.map((response) => response.method.replace("_", " ")))];
-  const fields = Math.max(...responses.map((response) => response.field_error_estimate ?? 0));
-  const ofFields = fields ? `, of fields ${quantity(fields, "1", inputs, 2)} of their largest value` : "";
-  const model = 100 * Math.max(...responses.flatMap((response) => response.model_error));
-  // The last load is the one of the form.
-  const data = responses.find((response) => response.data_error)?.data_error.at(-1);
-  const byPoints = data ? ` The points of the table leave an error of about ${format(100 * data, 2)} % of depth and force.` : "";
-  const accuracy =
-    `Computed by ${methods.join(" and ")}; estimated relative error ${quantity(error, "1", inputs, 2)}${ofFields}. ` +
-    `The model of ${hasLayer(inputs) ? "the layer" : "half-spaces"} itself errs by ${model < 100 ? "about" : "over"} ${format(model, 2)} %.${byPoints}`;
-  const sources = `Sources: ${[...new Set(responses.flatMap((response) => response.sources))].join("; ")}.`;
-  $("#accuracy").replaceChildren(
-    ...[limits, accuracy].filter(Boolean).map((text) => make("p", {}, text)), make("small", {}, sources));
-  // The estimate of the error is shown above, and the page does not set `rtol`.
-  const warnings = [...notes, ...responses.flatMap((response) => response.warnings)]
-    .filter(({ code }) => code !== "accuracy");
-  const messages = new Map(warnings.map(({ code, message }) => [code, message]));
-  $("#warnings").replaceChildren(...[...messages].map(([code, message]) =>
-    make("li", {}, make("strong", {}, code.replaceAll("_", " ")), ` ${inWords(message, inputs, labels())}`)));
-}
-
-// Member of a request -> keys of the inputs that set it.
-const SOURCES = {
-  "/friction_coefficient": "mu", "/load": "load", "/tangential": "amount", "/oscillation": "amplitude",
-  "/wear_coefficient": "wear", "/cycles": "cycles", "/body": "body",
-  "/material/work_of_adhesion": "w", "/material/body_thickness": "thickness", "/body_thickness": "thickness",
-  "/material/layer": "thickness",
-  "/history": "path", "/normal_mass": "mass", "/tangential_mass": "share", "/normal_velocity": "approach",
-  "/tangential_velocity": "along", "/indentation_depth": "curve", "/normal_force": "curve",
-  "/profile/r/": "table", "/profile/f/": "table",
-  "/material/bodies/0/youngs_modulus": "e1", "/material/bodies/0/poissons_ratio": "nu1",
-  "/material/bodies/1/youngs_modulus": "e2", "/material/bodies/1/poissons_ratio": "nu2",
-  "/material/bodies": "material-2",
-};
-
-/** Return the key of the input that sets the member of a request at a pointer. */
-function keyOf(pointer) {
-  if (pointer === "/material/yield_strength") return `yield${inputs.body}`;
-  const member = Object.keys(SOURCES).find((prefix) => `${pointer}/`.startsWith(prefix));
-  if (member) return SOURCES[member];
-  const [, , name, index, part] = pointer.split("/");
-  if (pointer === "/profile" && inputs.kind === "tabulated") return "table";
-  if (name === "radii") return index === "0" ? "radius_1" : "radius_2";
-  if (name === "breaks") return name;
-  return name === "terms" ? `${part}_${Number(index) + 1}` : pointer.split("/").pop();
-}
-
-/** Return the field at a pointer, and a message about it. */
-function placed({ pointer, detail }) {
-  const field = document.querySelector(`.field[data-key="${keyOf(pointer)}"]:not([hidden])`);
-  const label = (field?.querySelector("label > span") ?? field?.querySelector("label"))?.textContent;
-  const [, row] = pointer.match(/^\/profile\/[rf]\/(\d+)$/) ?? [];
-  const [, point] = pointer.match(/^\/history\/\w+\/\w+\/(\d+)$/) ?? [];
-  // A heading is the first line of a table that the page has written.
-  const line = row && (inputs.table.lines?.[row] ?? Number(row) + 2);
-  const where = line ? `line ${line}: ` : point ? `point ${Number(point) + 1}: ` : "";
-  const text = where + inWords(detail, inputs, labels());
-  return { field, text, message: label ? `${label}: ${text}` : text };
-}
-
-function showProblem(error) {
+/** Show an error, or none. */
+function tell(error) {
   problem = error;
-  const box = $("#problem");
-  document.querySelectorAll(".field:has(.problem)").forEach((field) => mark(field, ""));
-  box.hidden = !error;
-  if (!error) return;
-  const { title = "The page has an error", errors = [] } = error.problem ?? {};
-  const found = errors.map(placed);
-  for (const { field, text } of found) if (field) mark(field, text);
-  const detail = found.length ? found.map(({ message }) => message).join("; ") : inWords(error.message, inputs, labels());
-  box.textContent = title === detail ? title : `${title}: ${detail}`;
+  showProblem(error, inputs, labels());
 }
 
-function showRequests() {
-  const select = $("#request");
-  const chosen = select.value;
-  select.replaceChildren(...requests.map(({ name, path }) => new Option(`${name}: POST /${path}`, name)));
-  if (requests.some(({ name }) => name === chosen)) select.value = chosen;
-  showSource();
-}
-
-function showSource() {
-  const request = requests.find(({ name }) => name === $("#request").value);
-  $("#code").textContent = request ? source($("#language").value, request) : "";
-  $("#copied").textContent = "";
-}
-
-function showRequest(name) {
-  $("#request").value = name;
-  showSource();
-  $("#code").focus();
-}
-
-async function saveCsv() {
-  const { name, path, body } = requests.find((request) => request.name === $("#request").value);
-  download(`${fileName(name)}.csv`, inShownUnits(await queryCsv(path, body), inputs), "text/csv");
+/** Fit the depths of a range. */
+function select(range) {
+  const [from, to] = range.map((depth) => Number(depth.toPrecision(4)));
+  show({ ...inputs, from, to });
 }
 
 function showPath() {
@@ -358,22 +245,21 @@ const solve = newestWins(async () => {
   try {
     const result = await ANALYSES[current.tab].solve(current, recording);
     if (current.tab !== inputs.tab) return;
-    requests = recorded;
     last = result;
     shownTab = current.tab;
     document.body.classList.remove("stale");
-    if (isShown()) showProblem(null);
-    showNumbers(result.numbers);
-    showAccuracy(result, noteOnUnits(current, result.known.contact_radius));
+    if (isShown()) tell(null);
+    showNumbers(result.numbers, current);
+    showAccuracy(result, noteOnUnits(current, result.known.contact_radius), current, labels());
     sketch();
-    showRequests();
-    await draw($("#charts"), result.charts, current, showRequest);
+    showRequests(recorded);
+    await draw($("#charts"), result.charts, current, { showRequest, select });
     document.body.dataset.drawn = toAddress(current);
     if (isShown()) setState("current");
   } catch (error) {
     if (!(error instanceof Refusal)) reportError(error);
     if (!isShown()) return;
-    showProblem(error);
+    tell(error);
     setState("refused");
   }
 });
@@ -389,6 +275,9 @@ function refresh() {
   clearTimeout(refresh.timer);
   sketch();
   own.show(inputs, listedField(inputs));
+  // Mail programs break longer links.
+  const length = toAddress(inputs).length;
+  $("#link-length").textContent = length > 2000 ? ` It is ${Math.ceil(length / 1000)} kB long with the points of the table: send a file of these instead.` : "";
   if (unreadable.size) return setState("unreadable");
   // Browsers limit how often the address may change.
   refresh.timer = setTimeout(() => history.replaceState(null, "", toAddress(inputs)), 250);
@@ -402,7 +291,7 @@ function showTab(tab) {
   // The address of the tab that is left is complete before the next step of the history.
   if (unreadable.size === 0) history.replaceState(null, "", toAddress(inputs));
   inputs = { ...inputs, tab };
-  if (tab === "wear" && inputs.control === "contact_radius") {
+  if (!controls(tab).includes(inputs.control)) {
     inputs = { ...inputs, control: "normal_force", load: last?.known?.normal_force ?? 100 };
   }
   history.pushState(null, "", toAddress(inputs));
@@ -428,7 +317,8 @@ function connect() {
   for (const [kind, { label }] of Object.entries(KINDS)) $("#kind").add(new Option(label, kind));
   $("#kind").addEventListener("change", () => show(withKind(inputs, $("#kind").value)));
   for (const [key, kind] of [["table", PROFILE], ["curve", CURVE]]) {
-    tables[key] = tableField($(`#${key}-fields`), kind, { change: (table) => change(key, table), fail: () => fail(key) });
+    const take = key === "curve" ? takeCurve : (table) => change(key, table);
+    tables[key] = tableField($(`#${key}-fields`), kind, { change: take, fail: () => fail(key) });
   }
   own = ownLoads($("#own"), {
     state: () => ({ inputs, field: listedField(inputs), result: last, title: ANALYSES[inputs.tab].title }),
@@ -437,12 +327,7 @@ function connect() {
     fail: () => fail("loads"),
   });
   $("#reset").addEventListener("click", () => show({ ...defaultInputs(), tab: inputs.tab }));
-  $("#request").addEventListener("change", showSource);
-  $("#language").addEventListener("change", showSource);
-  $("#copy").addEventListener("click", async () => {
-    $("#copied").textContent = (await copied($("#code"))) ? "Copied." : "Selected: press Ctrl+C to copy.";
-  });
-  $("#csv").addEventListener("click", saveCsv);
+  connectExport(() => inputs);
   $("#print").addEventListener("click", async () => {
     // Without a table the case has changed meanwhile.
     if (!inputs.loads || (await own.computed())) print();
@@ -460,6 +345,6 @@ showAddress();
 fetch("v1/profiles").then((response) => response.json()).then(({ profiles }) => {
   catalogue = Object.fromEntries(profiles.map((profile) => [profile.kind, profile]));
   if (unreadable.size === 0) showForm();
-  showProblem(problem);
+  tell(problem);
 });
 fetch("health").then((response) => response.json()).then((health) => ({ version } = health));

@@ -73,5 +73,8 @@ export const QUANTITIES = {
   youngs_modulus: ["Young's modulus of the sample", "pressure"],
   youngs_modulus_error: ["Its standard deviation", "pressure"],
   residual: ["Measured less fitted forces", "force"],
+  g_star: ["Effective shear modulus G*", "modulus"],
   friction_coefficient: ["Coefficient of friction µ", "1"],
+  rig_compliance: ["Compliance of the rig", "compliance"],
+  dissipated_energy_error: ["Its standard deviation", "energy"],
 };

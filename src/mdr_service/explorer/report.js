@@ -1,7 +1,8 @@
 // The report that is printed: inputs, results, and where its data are.
 
+import { leadOf } from "./analyses.js";
 import { make, makeTable } from "./dom.js";
-import { pathPoints, toAddress } from "./inputs.js";
+import { hasLoop, pathPoints, toAddress } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
 import { quantity } from "./units.js";
 
@@ -42,7 +43,7 @@ export function showReport(inputs, analysis, version) {
   const date = new Date().toLocaleDateString("en-GB", { day: "numeric", month: "long", year: "numeric" });
   const table = (title, rows) => make("section", {}, make("h2", {}, title), makeTable([], rows));
   document.querySelector("#report").replaceChildren(
-    make("p", {}, `${analysis.title}: ${analysis.lead}`),
+    make("p", {}, `${analysis.title}: ${leadOf(inputs)}`),
     make("p", {}, `${date}, MDR ${version}`),
     make("div", { className: "tables" }, table("Inputs", givenRows(inputs)), table("Results", results)));
   // The table of own loads is there if it belongs to this case.
@@ -51,7 +52,7 @@ export function showReport(inputs, analysis, version) {
     ...own.map((found) => make("section", {}, make("h2", {}, "Table of results"), found)));
   const held = [
     ...(inputs.kind === "tabulated" ? [dataWords("Table", ["r", "f"], inputs.table)] : []),
-    ...(inputs.tab === "fit" ? [dataWords("Measured curve", ["d", "F"], inputs.curve)] : []),
+    ...(inputs.tab === "fit" ? [dataWords("Measured curve", [hasLoop(inputs) ? "u" : "d", "F"], inputs.curve)] : []),
   ];
   document.querySelector("#data").textContent = held.join(" ");
   // The points of a long table are no part of a link that anybody would type.

@@ -1,5 +1,6 @@
 // The field for the two columns of a profile or a curve: its text, its units, and files.
 
+import { make } from "./dom.js";
 import { mark } from "./form.js";
 import { readTable } from "./table_reader.js";
 import { numberOf } from "./units.js";
@@ -7,9 +8,11 @@ import { numberOf } from "./units.js";
 // Points of a tip from the coefficients of its area function.
 const POINTS_OF_AREA = 200;
 
-/** Return the table of A(h) = C0 h² + C1 h + C2 √h + … up to the height `most`, as text. */
-function areaText(coefficients, most, unit) {
-  const heights = Array.from({ length: POINTS_OF_AREA }, (_, i) => most * (i / (POINTS_OF_AREA - 1)) ** 2);
+/** Return the table of A(h) = C0 h² + C1 h + C2 √h + … between heights, and the end of the tip, as text. */
+function areaText(coefficients, least, most, unit) {
+  const between = Array.from({ length: POINTS_OF_AREA }, (_, i) => least + (most - least) * (i / (POINTS_OF_AREA - 1)) ** 2);
+  // The end of the tip is known, whatever A(h) is next to it.
+  const heights = [0, ...between.filter((h) => h > 0)];
   const area = (h) => coefficients.reduce((sum, c, i) => sum + c * h ** (2 ** (1 - i)), 0);
   return [`h [${unit}], A [${unit}²]`, ...heights.map((h) => `${h}, ${area(h)}`)].join("\n");
 }
@@ -37,20 +40,25 @@ export function axisOf({ r, f }) {
 
 /**
  * Return the field in an element for tables of a kind (`PROFILE`, `CURVE`), with `show(table,
- * unreadable)`. `change(table)` is called with a table that is read, else `fail()`.
+ * unreadable, heads)`, names of its columns. `change(table)` is called with a table that is read, else `fail()`.
  */
 export function tableField(root, kind, { change, fail }) {
   const part = (selector) => root.querySelector(selector);
   const text = part("textarea");
   const selects = [...root.querySelectorAll("select")];
+  // Whether the user has chosen a unit since a heading named one.
+  const own = [false, false];
+  let { heads } = kind;
+  // Text or bytes that were read last, and the columns that were chosen.
+  let given = [];
   // The table whose text the field holds, and the number of the newest text, which is being read.
   let [shown, newest, pending] = [null, 0, false];
 
   const textOf = ({ r, f, units }) =>
-    [kind.heads.map((head, i) => `${head} [${units[i]}]`).join(", "), ...r.map((x, i) => `${x}, ${f[i]}`)].join("\n");
+    [heads.map((head, i) => `${head} [${units[i]}]`).join(", "), ...r.map((x, i) => `${x}, ${f[i]}`)].join("\n");
 
   const describe = ({ r, named, ofAreas }) => {
-    const units = named?.every(Boolean) ? "; units from the heading" : "; the heading names no units: choose them above";
+    const units = named?.every(Boolean) ? "; units from the heading" : "";
     const areas = ofAreas ? "; r = √(A/π) from the areas" : "";
     part(".count").textContent = `${r.length} points${areas}${named ? units : ""}.`;
   };
@@ -62,22 +70,40 @@ export function tableField(root, kind, { change, fail }) {
     change(table);
   };
   const rewrite = (table) => {
+    part(".columns").replaceChildren();
     text.value = textOf(table);
     give({ ...table, named: undefined, lines: undefined });
   };
-  const read = async (content = text.value) => {
+  /** Offer the columns of a file `[number, name]`, those that are `taken` as chosen. */
+  const offerColumns = (content, columns, taken) => {
+    const choices = heads.map((head, i) => {
+      const options = [["", "choose"], ...columns].map(([number, name]) => new Option(number ? `${number}: ${name}` : name, number));
+      const choice = make("select", {}, ...options);
+      choice.value = taken[i] ?? "";
+      return [make("label", {}, `${head}: column `, choice), choice];
+    });
+    const chosen = () => choices.map(([, choice]) => choice.value);
+    for (const [, choice] of choices) choice.addEventListener("change", () => chosen().every(Boolean) && read(content, chosen()));
+    part(".columns").replaceChildren(...(columns.length > 2 ? choices.map(([label]) => label) : []));
+  };
+  const read = async (content = text.value, columns = undefined) => {
+    given = [content, columns];
     part(".thin").hidden = true;
-    const own = ++newest;
+    const turn = ++newest;
     pending = true;
-    const result = await readTable(content, kind).catch((error) => error);
+    const result = await readTable(content, kind, columns).catch((error) => error);
     // A newer text is being read.
-    if (own !== newest) return;
+    if (turn !== newest) return;
     pending = false;
+    offerColumns(content, result.columns ?? [], result.taken ?? []);
     try {
       if (result instanceof Error) throw result;
       const { units: named, ...table } = result;
-      const units = selects.map(({ value }, i) => named[i] ?? value);
+      named.forEach((name, i) => (own[i] &&= !name));
+      const units = selects.map(({ value }, i) => named[i] ?? (own[i] ? value : ""));
       selects.forEach((select, i) => (select.value = units[i]));
+      const open = heads.filter((_, i) => !units[i]);
+      if (open.length) throw new Error(`no heading names the unit of ${open.join(" and ")}: choose it`);
       offerThinning({ ...table, units });
       give({ ...table, units, named });
     } catch (error) {
@@ -101,11 +127,13 @@ export function tableField(root, kind, { change, fail }) {
     throw new Error(`${r.length} points, of which the service takes ${kind.most}`);
   };
   selects.forEach((select, i) => {
+    select.add(Object.assign(new Option("unit?", ""), { disabled: true, hidden: true }));
     for (const name of Object.keys(kind.units[i])) select.add(new Option(name));
     select.addEventListener("change", () => {
+      own[i] = true;
       // The heading of the text states the units that are chosen.
       if (part(".problem").textContent === "") rewrite({ ...shown, units: selects.map(({ value }) => value) });
-      else read();
+      else read(...given);
     });
   });
   text.addEventListener("input", () => read());
@@ -120,26 +148,30 @@ export function tableField(root, kind, { change, fail }) {
   part("[type=file]").addEventListener("change", async ({ target }) => {
     const [file] = target.files;
     text.value = await file.text();
+    own.fill(false);
     // Its bytes, because the service knows other encodings.
     read(await file.arrayBuffer());
     target.value = "";
   });
   part(".use-area")?.addEventListener("click", () => {
     const coefficients = part("#coefficients").value.trim().split(/[\s;]+/).map(numberOf);
-    const most = numberOf(part("#largest-height").value);
+    const [least, most] = ["lowest", "largest"].map((end) => numberOf(part(`#${end}-height`).value));
     const wrong = coefficients.some(Number.isNaN) ? "the coefficients are numbers with blanks between them"
-      : most > 0 ? "" : "the largest height is a positive number";
+      : !(least >= 0 && most > least) ? "the heights are numbers, the lowest at least 0 and below the largest"
+        : selects[1].value ? "" : "choose the unit of f above";
     part("#area-problem").textContent = wrong;
     if (wrong) return;
-    text.value = areaText(coefficients, most, selects[1].value);
+    text.value = areaText(coefficients, least, most, selects[1].value);
     read();
   });
 
   return {
     /** Show a table, unless the field holds it or a text that cannot be read. */
-    show(table, unreadable) {
+    show(table, unreadable, names = heads) {
+      heads = names;
       if (unreadable || pending || table === shown) return;
       shown = table;
+      part(".columns").replaceChildren();
       text.value = textOf(table);
       selects.forEach((select, i) => (select.value = table.units[i]));
       describe(table);

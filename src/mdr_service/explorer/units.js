@@ -34,7 +34,9 @@ const OWN_UNITS = {
   1: { name: "", factors: { "": 1 } },
 };
 // Derived dimension -> powers of the base units.
-const DERIVED = { stiffness: { force: 1, displacement: -1 }, volume: { length: 3 } };
+const DERIVED = {
+  stiffness: { force: 1, displacement: -1 }, compliance: { displacement: 1, force: -1 }, volume: { length: 3 },
+};
 
 const SUPERSCRIPTS = { 1: "", 2: "²", 3: "³" };
 
@@ -51,14 +53,15 @@ function bySize(factors, size) {
 /**
  * Return the display unit `{name, factor}` of a dimension: SI value = shown value × factor.
  *
- * With the size of an SI value it is a unit in which the number is easily read.
+ * With the size of an SI value it is a unit in which the number is easily read; the chosen unit is
+ * kept for numbers from `least`.
  */
-export function unit(dimension, inputs, size) {
+export function unit(dimension, inputs, size, least = LEAST) {
   const isSized = size > 0 && Number.isFinite(size);
   const base = BASE_UNITS[dimension];
   if (base) {
     const factor = base.factors[inputs[base.key]];
-    const fits = !isSized || (size >= LEAST * factor && size < MOST * factor);
+    const fits = !isSized || (size >= least * factor && size < MOST * factor);
     return fits ? { name: inputs[base.key], factor } : bySize(base.factors, size);
   }
   const own = OWN_UNITS[dimension];
@@ -121,7 +124,7 @@ export function quantity(value, dimension, inputs, digits) {
 
 /** Return an SI value ± its standard error, which has two digits, with the display unit. */
 export function uncertain(value, error, dimension, inputs) {
-  const { name, factor } = unit(dimension, inputs, Math.max(Math.abs(value), error));
+  const { name, factor } = unit(dimension, inputs, Math.max(Math.abs(value), error), 1);
   const [number, spread] = [value / factor, error / factor];
   const decimals = Math.min(Math.max(1 - Math.floor(Math.log10(spread)), 0), 15);
   if (!(spread > 0) || spread >= 1e6 || spread < 1e-12) {

@@ -189,6 +189,7 @@ class LoopAnswer(SolvedAnswer):
         "warning that names the likeliest fault"
     )
     dissipated_energy: list[float] = _energy("Energy dissipated in a cycle of the fitted loop")
+    dissipated_energy_error: list[float] = _energy("Its standard deviation")
     tangential_displacement: list[float] = _length("Measured displacements")
     tangential_force: list[float] = _force("Fitted forces")
     residual: list[float] = _force("Measured less fitted forces")
