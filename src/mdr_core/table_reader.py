@@ -196,6 +196,100 @@ def parse(content: bytes, kind: Sequence[str], columns: Sequence[int] | None = N
     """
     lines = _lines(_decoded(content))
     last = next((text for _, comment, text in reversed(lines) if text and not comment), "")
+    expected = f"no line holds two numbers, a {kind[0]} and a {kind[1]}"
+    errors = [(0, InputError(("table",), expected))]
+    # A table goes on to the last line: the dialects in which that line is a row come first.
+    numbers = {dialect: _numbers(cells_of(last, dialect[0]), dialect[1]) for dialect in _DIALECTS}
+    for separator, form in sorted(_DIALECTS, key=lambda dialect: not numbers[dialect]):
+        rows, heading, error = _rows(lines, separator, form, numbers[separator, form])
+        if error:
+            errors.append((len(rows), error))
+        elif rows:
+            titles = titles_of(heading, separator, max(len(cells) for _, cells in rows), kind)
+            return _table(rows, titles, separator, kind, columns)
+    # Of the dialects, the one in which most lines are numbers is probably meant.
+    raise max(errors[1:] or errors, key=lambda each: each[0])[1]
+
+
+def _lines(text: str) -> list[tuple[int, bool, str]]:
+    """Return the number of each line, whether it is a comment, and what it holds.
+
+    Marks of comments, quotes and repeated blanks are left out.
+    """
+
+    def unquoted(quoted: re.Match[str]) -> str:
+        # A comma within quotes is a decimal comma, or part of a name.
+        decimal = re.fullmatch(_COMMA, quoted[1].strip())
+        return re.sub("[,;]", "." if decimal else " ", quoted[1])
+
+    for pattern, replaced in _REPLACED:
+        text = re.sub(pattern, replaced, text)
+    lines = re.sub('"([^"\n]*)"', unquoted, text).split("\n")
+    return [
+        (number, line.startswith("#"), line.lstrip("#").strip(" ").rstrip(" \t;,"))
+        for number, line in enumerate(lines, 1)
+    ]
+
+
+def _numbers(cells: Sequence[str], form: re.Pattern[str]) -> list[int]:
+    """Return the indices of two or more numbers; none beside one with another decimal sign."""
+    found = [i for i, cell in enumerate(cells) if form.fullmatch(cell)]
+    if len(found) < len(cells) and any(
+        _NUMBERLIKE.fullmatch(cell) for i, cell in enumerate(cells) if i not in found
+    ):
+        return []
+    return found if len(found) > 1 else []
+
+
+def _rows(
+    lines: Sequence[tuple[int, bool, str]],
+    separator: str,
+    form: re.Pattern[str],
+    columns: list[int],
+) -> tuple[list[_Row], list[tuple[int, str]], InputError | None]:
+    """Return rows of numbers and words, the heading above, and the error at a line that is neither.
+
+    Parameters
+    ----------
+    columns : indices of the numbers in each row; empty for those in the first row.
+    """
+    rows: list[_Row] = []
+    heading = []
+    for number, comment, text in lines:
+        if comment or not text:
+            heading += [] if rows else [(number, text)]
+            continue
+        cells = cells_of(text, separator)
+        found = _numbers(cells, form)
+        if found and found == (columns or found):
+            columns = found
+            rows.append((number, cells))
+        elif rows or form.fullmatch(cells[0]):
+            count = len(columns) or max(len(cells), 2)
+            return rows, heading, refuse(number, f"{count} numbers are expected")
+        else:
+            heading.append((number, text))
+    return rows, heading, None
+
+
+def _table(
+    rows: Sequence[_Row],
+    titles: list[Title],
+    separator: str,
+    kind: Sequence[str],
+    columns: Sequence[int] | None,
+) -> ParsedFile:
+    first, cells = rows[0]
+    numeric = [i for i, cell in enumerate(cells) if _NUMBERLIKE.fullmatch(cell)]
+    doubtful = separator == "," and len(cells) > 2 and not any(each.name for each in titles)
+    if doubtful and all(re.fullmatch(r"[-+]?\d+", row[i]) for _, row in rows for i in numeric):
+        detail = "a comma may separate columns or decimals; separate columns by ; or tabs"
+        raise refuse(first, detail)
+    if wrong := [number for number in columns or () if number - 1 not in numeric]:
+        raise refuse(first, f"column {wrong[0]} holds no numbers")
+    places = [number - 1 for number in columns or ()] or places_of(titles, numeric, kind, first)
+    taken, values = {}, []
+    for i, wanted in zip(places, kind, strict=True):
         title = titles[i]
         is_area = wanted == "radius" and _AREAS & set(re.split(r"[\W\d_]+", title.name.lower()))
         taken[i] = quantity = "area" if is_area else wanted
