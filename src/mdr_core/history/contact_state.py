@@ -290,7 +290,7 @@ def advance(
     >>> state = advance(unloaded(Cone(0.1), 1.0, 1.0, 0.5), 2.0, 0.0)
     >>> state = advance(state, 2.0, 0.5)
     >>> normal_force = (2.0 / 0.1) ** 2 * 0.1 * 2 / np.pi
-    >>> round(state.tangential_force / (0.5 * normal_force), 12)
+    >>> print(round(state.tangential_force / (0.5 * normal_force), 12))
     0.75
     """
     require_type("state", state, ContactState, "a state, as from history.unloaded")
