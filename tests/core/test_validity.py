@@ -414,7 +414,7 @@ def test_warning_near_the_end_of_a_table() -> None:
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 def test_thickness_changes_radius_and_pressure_under_a_force_by_less_than_stated(nu: float) -> None:
-    """The contact with the layer itself has one to two thirds of the estimate."""
+    """The layer changes the radius by a third of the estimate to all of it."""
     bodies = [RIGID, Body(1.0, nu)]
     thin = normal.solve(
         Cone(1.0), from_bodies(bodies, body_thickness=10.0), contact_radius=[0.5, 1.0]

@@ -11,13 +11,11 @@
 // alumina: R. G. Munro, J. Am. Ceram. Soc. 80 (1997) 1919; N-BK7: data sheet of Schott;
 // fused silica: data sheet of Corning HPFS 7980.
 // Strengths: structural steel, the least of ASTM A36; stainless steel 304, the least of ASTM A240;
-// bearing steel, the least of 1.6 to 2.0 GPa of through-hardened 52100, H. K. D. H. Bhadeshia,
-// Prog. Mater. Sci. 57 (2012) 268;
 // 6061-T6, typical, The Aluminum Association; Ti-6Al-4V, the least of ASTM B348, grade 5.
 
 export const MATERIALS = {
   "Structural steel": [2.1e11, 0.3, 2.5e8, 7850],
-  "Bearing steel 52100": [2.07e11, 0.3, 1.6e9, 7810],
+  "Bearing steel 52100": [2.07e11, 0.3, null, 7810],
   "Stainless steel 304": [1.9e11, 0.3, 2.05e8, 7900],
   "Aluminium 6061-T6": [7e10, 0.33, 2.76e8, 2700],
   "Titanium Ti-6Al-4V": [1.14e11, 0.33, 8.28e8, 4430],
