@@ -662,9 +662,9 @@ def test_strength_follows_the_material(visit: Visit) -> None:
     visit.fill("yield2", "500")
     with visit.changing():
         visit.page.select_option("#field-material-1", "Structural steel")
-    # The weaker of the two, beside bearing steel too.
+    # The weaker of the two, beside titanium too.
     with visit.changing():
-        visit.page.select_option("#field-material-2", "Bearing steel 52100")
+        visit.page.select_option("#field-material-2", "Titanium Ti-6Al-4V")
     assert visit.page.input_value("#field-body") == "1"
     assert visit.page.get_attribute("#field-yield1", "placeholder") == "250"
     # The moduli of no listed material leave the strength open.
