@@ -88,7 +88,8 @@ function change(key, value) {
   inputs = { ...inputs, [key]: value };
   // Material and values that follow from the one that has changed.
   const body = /^(?:e|nu)([12])$/.exec(key)?.[1];
-  if (body) $(`#field-material-${body}`).value = materialOf(inputs, body) ?? "Custom";
+  const material = body && $(`#field-material-${body}`);
+  if (material) material.value = materialOf(inputs, body) ?? "Custom";
   for (const { key: other, optional, placeholder } of ANALYSES[inputs.tab].fields(inputs)) {
     if (optional) $(`#field-${other}`).placeholder = placeholder;
   }
