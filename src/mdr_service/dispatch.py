@@ -24,8 +24,8 @@ from mdr_service.settings import SETTINGS
 
 _logger: Final = logging.getLogger(__name__)
 # Maximum number of values in the response to a query that runs on the event loop; each load has
-# about ten, and for a series the number is multiplied by its terms. Fields at a thousand radii just
-# meet the limit, and take a millisecond or two.
+# about ten; a series has as many for each of its terms, and two spheres for each sphere. Fields at
+# a thousand radii just meet the limit, and take a millisecond or two.
 _MAX_NUMBERS_ON_LOOP, _PER_LOAD = 1_100, 10
 
 
@@ -43,8 +43,11 @@ def is_short(name: str, query: Query) -> bool:
         or query.material.has("layer")
     )
     size = query.numbers + _PER_LOAD * (query.path.samples if query.path else query.loads)
-    terms = len(query.profile.terms) if isinstance(query.profile, SeriesProfile) else 1
-    return not is_slow and terms * size <= _MAX_NUMBERS_ON_LOOP
+    if isinstance(query.profile, SeriesProfile):
+        size *= len(query.profile.terms)
+    elif query.profile.kind == "two_spheres":
+        size *= 2
+    return not is_slow and size <= _MAX_NUMBERS_ON_LOOP
 
 
 def respond(

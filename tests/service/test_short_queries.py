@@ -29,12 +29,9 @@ POINTS = {"normal": {"normal_force": [8.0, 9.0]}, "tangential": {"tangential_for
 MIXED = POINTS | {"normal": {"indentation_depth": [1e-6, 2e-6]}}
 PATH = {name: HISTORY[name] for name in ("profile", "material", "friction_coefficient")}
 STRENGTH = {"material": STRESS["material"] | {"yield_strength": 1e9}}
-WEAR_LOADS = {
-    "friction_coefficient": 0.3,
-    "oscillation": {"tangential_force": np.linspace(1e-4, 5e-3, 110).tolist()},
-}
-# Time on the event loop; the bound on small queries beside a client is five times as long [s].
-LONGEST = 5e-3
+# Time of a query on the event loop over that of the closed form of Hertz at 110 loads, which takes
+# half a millisecond on a core of 2023: such a query delays the others by at most 15 ms there.
+MOST_TIMES = 30.0
 
 
 def query(name: str, value: dict[str, Any]) -> Query:
@@ -70,19 +67,30 @@ def test_short_queries_run_on_the_event_loop(
     assert is_short(name, query(name, value)) == short
 
 
+def processor_time(name: str, given: Query) -> float:
+    start = thread_time()
+    respond(name, given, FORMATS["json"])
+    return thread_time() - start
+
+
 @pytest.mark.long
 @pytest.mark.alone
 @pytest.mark.parametrize("kind", sorted(PROFILES.keys() - {"tabulated"}))
-def test_short_queries_take_milliseconds(kind: str) -> None:
+def test_a_short_query_takes_little_more_than_closed_forms(kind: str) -> None:
+    # A series and two spheres are short up to fewer loads.
+    share = {"series": len(PROFILES["series"]["terms"]), "two_spheres": 2}.get(kind, 1)
     part = {"profile": {"kind": kind, **PROFILES[kind]}, "material": {"e_star": 1.0, "g_star": 0.9}}
     rubbed = part | {"friction_coefficient": 0.3, "tangential": {"tangential_displacement": 1e-9}}
     path = {
         "normal": {"normal_force": [8e-3, 9e-3]},
         "tangential": {"tangential_force": [0.0, 1e-3]},
-        "samples_per_step": 55,
+        "samples_per_step": 55 // share,
     }
-    load = {"load": {"normal_force": np.linspace(0.01, 0.02, 110).tolist()}}
-    radii = {"radius": np.linspace(0.0, 1.0, 540).tolist()}
+    load = {"load": {"normal_force": np.linspace(0.01, 0.02, 110 // share).tolist()}}
+    radii = {"radius": np.linspace(0.0, 1.0, 540 // share).tolist()}
+    amplitude = {"tangential_force": np.linspace(1e-4, 5e-3, 110 // share).tolist()}
+    rubbing = {"friction_coefficient": 0.3, "oscillation": amplitude}
+    hertz = query("normal", BALL | {"load": {"normal_force": np.linspace(5.0, 10.0, 110).tolist()}})
     for name, value in (
         ("normal", part | load),
         ("tangential", rubbed | load),
@@ -91,16 +99,13 @@ def test_short_queries_take_milliseconds(kind: str) -> None:
             rubbed | {"load": {"normal_force": 0.02}, "quantities": ["pressure", "slip"]} | radii,
         ),
         ("history", part | {"friction_coefficient": 0.3, "history": path}),
-        ("wear", part | WEAR_LOADS | {"load": {"normal_force": 0.02}}),
+        ("wear", part | rubbing | {"load": {"normal_force": 0.02}}),
     ):
         given = query(name, value)
-        assert is_short(name, given) or kind == "series"
-        times = []
-        for _ in range(5):
-            start = thread_time()
-            respond(name, given, FORMATS["json"])
-            times.append(thread_time() - start)
-        assert min(times) < LONGEST, name
+        assert is_short(name, given)
+        rounds = [(processor_time(name, given), processor_time("normal", hertz)) for _ in range(7)]
+        times, closed = (min(each) for each in zip(*rounds, strict=True))
+        assert times < MOST_TIMES * closed, name
 
 
 def test_every_number_of_a_response_counts() -> None:
