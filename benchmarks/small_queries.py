@@ -56,14 +56,15 @@ TARGETS = {
     "cycle": (0.25, 0.1, 0.08, 0.01),
 }
 # Upper bounds of the processor time of a query without HTTP, over that of reading and writing its
-# text by the standard library.
+# text by the standard library. A third of the time of a closed form goes to warnings, errors of the
+# model and thresholds.
 IN_PROCESS = {
     "stress": (2, 7, 20, 80),
-    "tangential": (17, 65, 10, 100),
-    "normal": (12, 40, 5, 100),
+    "tangential": (30, 65, 10, 100),
+    "normal": (20, 40, 5, 100),
     "wear": (65, 210, 20, 100),
-    "tangential/history": (25, 130, 25, 100),
-    "cycle": (40, 155, 20, 100),
+    "tangential/history": (45, 130, 25, 100),
+    "cycle": (65, 155, 20, 100),
 }
 # The socket of the benchmark is deep: its largest pressure is searched, in six times the time of
 # the whole query of a ball.

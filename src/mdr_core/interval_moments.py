@@ -25,10 +25,10 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import NODES, cumulative_rule
 from mdr_core.typing import Array, Flags, Indices
 
-# An interval is wide if the normal coordinate grows on it by more than the first factor, or if the
-# contact radius or the distance from a pole of the slope grows by more than the second. Beyond a
-# break the third factor applies to the radius. Differences of closed forms over a wide interval
-# hardly suffer cancellation.
+# An interval is wide if the normal coordinate grows on it by more than the first factor, or the
+# contact radius by more than the second. Beyond a break the third factor applies to the radius.
+# Differences of closed forms over a wide interval hardly suffer cancellation. The steps of the rule
+# resolve a pole from which the distance changes by more than the second factor.
 _WIDE_IN_NORMAL, _WIDE, _WIDE_BEYOND_BREAK = 16.0, 3.0, 1.3
 
 
@@ -169,8 +169,7 @@ class IntervalMoments:
     def over_smooth(self, low: Array, span: Array, ends: Array, base: Array) -> Array:
         """Return the moments over intervals without a break. Parameters: `over`, `over_narrow`."""
         profile, weights, long = self.profile, np.zeros((3, low.size)), span > 0
-        start, stop = profile.pole - ends
-        grows = (start > _WIDE * stop) | (low + span > _WIDE_IN_NORMAL * low)
+        grows = low + span > _WIDE_IN_NORMAL * low
         # Next to a flat the contact radius hardly changes while the normal coordinate grows.
         grows &= (base == 0) & (profile.first_radius == 0)
         radius = profile.contact_radius(ends)
@@ -242,6 +241,13 @@ class IntervalMoments:
         step = near * np.expm1(growth * share)
         root = bottom + step
         past, moved = root * root, 2 * root * growth * (near + step)
+        farthest, nearest = profile.pole - ends
+        if some(graded := (base == 0) & (farthest > _WIDE * nearest)):
+            # Next to a pole its distance shrinks by a constant factor instead.
+            growth = np.log(np.where(graded, farthest, 1.0) / np.where(graded, nearest, 1.0))
+            distance = farthest * np.exp(-growth * share)
+            past = np.where(graded, profile.pole - base - distance, past)
+            moved = np.where(graded, growth * distance, moved)
         place = np.minimum(base + past, stop)
         slope = profile.depth_slope_beyond(place, base, past)
         # Rounding may put nodes of narrow intervals on a break, next to which g' may be infinite.

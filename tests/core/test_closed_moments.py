@@ -10,24 +10,31 @@ from mdr_core.profiles import PowerTerm, Series, SphericalTipCone
 BERNSTEIN = (lambda t: (1 - t) ** 2, lambda t: 2 * t * (1 - t), lambda t: t * t)
 
 
-@pytest.mark.parametrize(("low", "high"), [(0.5, 0.999), (0.9, 0.95)])
-def test_moments_next_to_the_equator_of_a_tip(low, high):
-    """int B_k(t) 2 dx, t from 0 to 1 with g = x artanh x, up to 0.999 of the tangent radius."""
-    profile = SphericalTipCone(10.0, 1.0)
+@pytest.mark.parametrize(
+    ("slope", "low", "high"),
+    [(10.0, 0.5, 0.999), (10.0, 0.9, 0.95), (1e2, 0.999, 1.0), (1e3, 0.999999, 1.0)],
+)
+def test_moments_next_to_the_equator_of_a_tip(slope, low, high):
+    """int B_k(t) 2 dx over v = artanh x, t from 0 to 1 with g = x artanh x, up to the flank."""
+    profile = SphericalTipCone(slope, 1.0)
     ends = np.array([[low], [high]]) * float(profile.flank_start)
     moments = interval_moments(profile, over_forces=False)
     depth = profile.depth(ends)
     found = moments.over(depth[0], depth[1] - depth[0], ends).weights[:, 0]
+    # A radius is rounded relative to itself, its distance from the equator relative to less.
+    tolerance = 1e-12 + np.finfo(float).eps / float(1 - ends[1, 0])
     with mpmath.workdps(20):
-        start, stop = (mpmath.mpf(float(end)) for end in ends[:, 0])
-        bottom, top = (x * mpmath.atanh(x) for x in (start, stop))
+        start, stop = (mpmath.atanh(float(end)) for end in ends[:, 0])
+        bottom, top = (v * mpmath.tanh(v) for v in (start, stop))
         for k, value in enumerate(found.tolist()):
 
-            def density(x, k=k):
-                t = (x * mpmath.atanh(x) - bottom) / (top - bottom)
-                return 2 * mpmath.binomial(2, k) * t**k * (1 - t) ** (2 - k)
+            def density(v, k=k):
+                t = (v * mpmath.tanh(v) - bottom) / (top - bottom)
+                weight = mpmath.binomial(2, k) * t**k * (1 - t) ** (2 - k)
+                return 2 * weight * mpmath.sech(v) ** 2
 
-            assert abs(value / mpmath.quad(density, mpmath.linspace(start, stop, 5)) - 1) < 1e-12
+            exact = mpmath.quad(density, mpmath.linspace(start, stop, 5))
+            assert abs(value / exact - 1) < tolerance
 
 
 @pytest.mark.parametrize("slope", [10, 100])

@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mdr_core.elementwise import some
 from mdr_core.typing import Array, Flags, Indices, Parameter
 
 
@@ -51,6 +52,8 @@ def root_step(annulus: Annulus, r: Array) -> Array:
     """Return sqrt(a^2 - r^2) - sqrt(c^2 - r^2), the second term for r < c only [length]."""
     a, width, c, *_ = annulus
     root_a = np.sqrt((a - r) * (a + r))
+    if not some(c > r):
+        return root_a
     return np.where(c > r, width * (a + c) / (root_a + inverse_hypot(c, r)), root_a)
 
 
