@@ -151,7 +151,7 @@ def test_adhesive_ball_pulls_off_as_jkr(visit: Visit, load: str) -> None:
     force = float(visit.number("Pull-off force").split()[0].replace("−", "-"))
     assert force == pytest.approx(-1.5 * math.pi * 0.05, rel=1e-4, abs=0)
     text = visit.page.inner_text("#accuracy")
-    assert "The model of half-spaces itself errs by about 0." in text
+    assert "The model itself errs by about 0." in text
     # That of the state, not of the pull-off at which the curve begins.
     assert re.search(r"relative error [^ ]+·10⁻¹.", text) or "relative error 0" in text
     # Stable and unstable states, as they are drawn: F = 4 E* a³/(3 R) - (8 π E* w a³)^(1/2).

@@ -14,7 +14,7 @@ function parametersOf(found) {
 
 /** Return the numbers that say how well the model meets the forces. */
 const qualityOf = ({ noise, misfit }) => [
-  ["Scatter of the forces", noise[0], "force", undefined, 2], ["Residuals like noise, probability", misfit[0], "1", undefined, 2],
+  ["Scatter of the forces", noise[0], "force", undefined, 2], ["p-value of the residuals as noise", misfit[0], "1", undefined, 2],
 ];
 
 /** Return the charts of measured and fitted points `[x, y]`, and of the residuals against `place`. */

@@ -2,7 +2,7 @@
 
 import { make } from "./dom.js";
 import { mark } from "./form.js";
-import { hasLayer, hasLoop } from "./inputs.js";
+import { hasLoop } from "./inputs.js";
 import { inWords } from "./messages.js";
 import { inMetres } from "./shapes.js";
 import { format, quantity, uncertain } from "./units.js";
@@ -41,7 +41,7 @@ export function showAccuracy({ responses, lines = [] }, notes, inputs, labels) {
   const byPoints = data ? ` The points of the table leave an error of about ${format(100 * data, 2)} % of depth and force.` : "";
   const accuracy =
     `Computed by ${methods.join(" and ")}; estimated relative error ${quantity(error, "1", inputs, 2)}${ofFields}. ` +
-    `The model of ${hasLayer(inputs) ? "the layer" : "half-spaces"} itself errs by ${model < 100 ? "about" : "over"} ${format(model, 2)} %.${byPoints}`;
+    `The model itself errs by ${model < 100 ? "about" : "over"} ${format(model, 2)} %.${byPoints}`;
   const sources = `Sources: ${[...new Set(responses.flatMap((response) => response.sources))].join("; ")}.`;
   $("#accuracy").replaceChildren(
     ...[...lines, accuracy].filter(Boolean).map((text) => make("p", {}, text)), make("small", {}, sources));
