@@ -1,7 +1,7 @@
 """Exceptions, grouped by the action required of the caller."""
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 Remedy = Literal[
     "smaller_load",
@@ -17,12 +17,20 @@ Remedy = Literal[
 """Remedy named by a warning."""
 
 
+# Members of a request that hold arguments of the core's functions.
+_GROUPS: Final = frozenset(
+    {"profile", "material", "load", "tangential", "torsion", "history", "oscillation"}
+)
+
+
 class MDRError(Exception):
     """Base class of all exceptions that the core raises deliberately."""
 
 
 class InputError(MDRError, ValueError):
     """Invalid input: the value at `path` has no result in this model.
+
+    Its text names the argument, such as ``normal_force[3]``.
 
     Parameters
     ----------
@@ -33,7 +41,10 @@ class InputError(MDRError, ValueError):
     """
 
     def __init__(self, path: tuple[str | int, ...], detail: str, cases: Any = None) -> None:
-        super().__init__(f"{'.'.join(map(str, path))}: {detail}")
+        first, *rest = path or ("",)
+        names = rest if rest and first in _GROUPS else path
+        parts = (f"[{name}]" if isinstance(name, int) else f".{name}" for name in names)
+        super().__init__(f"{''.join(parts).removeprefix('.')}: {detail}".removeprefix(": "))
         self.path = path
         self.detail = detail
         self.cases = cases

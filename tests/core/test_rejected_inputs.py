@@ -3,6 +3,7 @@
 The wrong queries of `tests/service/test_wrong_input.py` reach the same checks over HTTP.
 """
 
+import re
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -225,6 +226,7 @@ def test_error_of_a_wrong_type_names_the_argument(argument: str, mistake: str) -
     with pytest.raises(InputError) as raised:
         ARGUMENTS[argument](MISTAKES[mistake])
     assert argument in raised.value.path
+    assert argument in re.split(r"[.\[]", str(raised.value).partition(":")[0])
     assert len(raised.value.detail) < 200
 
 
@@ -236,6 +238,11 @@ def test_error_names_path_index_and_reason(
         call()
     assert raised.value.path == path
     assert reason in raised.value.detail
+
+
+def test_text_of_an_error_begins_with_the_argument_and_its_index() -> None:
+    with pytest.raises(InputError, match=r"^normal_force\[1\]: must not be negative"):
+        normal.solve(Cone(1.0), 1.0, normal_force=[1.0, -1.0])
 
 
 FLAT_ENDED = [RoundedPunch(0.5, 1.0), TruncatedCone(0.5, 0.3), TruncatedParaboloid(0.5, 1.0)]

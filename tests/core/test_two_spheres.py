@@ -67,7 +67,7 @@ def test_one_sphere_beside_a_flat_is_the_sphere() -> None:
 
 @pytest.mark.parametrize("radii", [(1, -1), (1, -0.9), (-1, -2), (0, 1), (1,), (1, np.nan), 3])
 def test_no_gap(radii: object) -> None:
-    with pytest.raises(InputError, match=r"^profile\.radii"):
+    with pytest.raises(InputError, match=r"^radii"):
         TwoSpheres(radii)  # type: ignore[arg-type]
 
 
