@@ -77,7 +77,7 @@ export const OWN_FORMULAS = {
 
 /** Return the table of a ball of radius 10 mm as a profilometer measures it: r in mm, f in µm. */
 export function measuredBall() {
-  const r = Array.from({ length: 41 }, (_, i) => i / 100);
+  const r = Array.from({ length: 41 }, (_, i) => i / 50);
   return { r, f: r.map((x) => Number((50 * x * x).toFixed(2))), units: ["mm", "µm"] };
 }
 
