@@ -162,8 +162,8 @@ def worn() -> Iterator[Pair]:
 QUERIES: dict[str, Callable[[], Iterator[Pair]]] = {
     "normal": of_bank("normal"),
     "tangential": lambda: chain(of_bank("tangential")(), drawn.pushed(560)),
-    "history, paths": lambda: chain(of_bank("paths")(), drawn.paths(980)),
-    "history, cycles": lambda: chain(loads_of_cycles(), drawn.cycles(100)),
+    "history, paths": lambda: chain(of_bank("paths")(), drawn.paths(1100)),
+    "history, cycles": lambda: chain(loads_of_cycles(), drawn.cycles(920)),
     "impact": impacts,
     "torsion": twists,
     "layer": lambda: drawn.layers(1000),

@@ -159,15 +159,15 @@ TIMES = (("a request", 6e-4), ("a frame", 1 / 60), ("a person", 0.1))
 
 def sufficient(ax: Axes) -> None:
     """Shade the errors below those of model and input, and mark times that are short enough."""
-    low, high = ax.get_ylim()
-    right = ax.get_xlim()[1]
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
     for name, error in ERRORS:
         ax.axhspan(low, error, color=GREEN, alpha=0.05, lw=0, zorder=0)
-        ax.text(right, error, f"{name} ", fontsize=5, color=GREEN, ha="right", va="top")
+        ax.text(right, error, f"{name} ", fontsize=6, color=GREEN, ha="right", va="top")
     for name, time in TIMES:
-        ax.axvline(time, color="0.6", lw=0.7, ls=":", zorder=0)
-        ax.text(time, low, f" {name}", fontsize=5, color="0.4", rotation=90, va="bottom")
-    ax.set_ylim(low, high)
+        if left < time < right:
+            ax.axvline(time, color="0.6", lw=0.7, ls=":", zorder=0)
+            ax.text(time, low, f" {name}", fontsize=6, color="0.4", rotation=90, va="bottom")
+    ax.set(xlim=(left, right), ylim=(low, high))
 
 
 def rows_of(name: str) -> list[dict[str, str]]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import history_ratio as paths
 import numpy as np
-from drawing import BLUE, GREEN, GREY, MDR_COLOR, panels, save, table
+from drawing import BLUE, GREEN, GREY, MDR_COLOR, panels, save, sufficient, table
 from machine import footer
 from measure import medians
 
@@ -17,6 +17,7 @@ STEPS = 300
 SPRINGS = (10, 30, 100, 300, 1000, 3000, 10_000, 30_000, 100_000)
 FINEST = 1_600_000
 SECONDS = 20.0
+PLAIN, IN_PLACE, MDR = "springs, plain NumPy", "springs, in-place NumPy", "MDR, polyline"
 HEADER = ("method", "springs", "seconds", "largest error / largest force")
 
 
@@ -29,14 +30,14 @@ def main() -> None:
     def error(force: np.ndarray) -> float:
         return float(np.abs(force - fine).max() / size)
 
-    forms = {"springs, plain NumPy": paths.springs_plain, "springs, in-place NumPy": paths.springs}
+    forms = {PLAIN: paths.springs_plain, IN_PLACE: paths.springs}
     runs = {
         (name, count): lambda form=form, count=count: form(d, u, count)
         for name, form in forms.items()
         for count in SPRINGS
         if count <= 10_000 or form is paths.springs
     }
-    runs["MDR, polyline", 0] = lambda: paths.mdr(d, u).tangential_force
+    runs[MDR, 0] = lambda: paths.mdr(d, u).tangential_force
     seconds = medians(runs, SECONDS)
     rows = [
         (name, count or "", seconds[name, count], error(run()))
@@ -44,13 +45,20 @@ def main() -> None:
     ]
     table(HEADER, rows, "history")
     print(f"uncertainty of the reference: {uncertainty:.1e}")
+    draw(rows, uncertainty)
+
+
+def draw(rows: list[tuple[str, object, float, float]], uncertainty: float) -> None:
     figure, (ax,) = panels(1, 1, 3.0)
-    for name, color in zip((*forms, "MDR, polyline"), (BLUE, GREEN, MDR_COLOR), strict=True):
+    for name, color in ((PLAIN, BLUE), (IN_PLACE, GREEN), (MDR, MDR_COLOR)):
         points = np.array([row[2:] for row in rows if row[0] == name]).T
         ax.loglog(*points, "o-", color=color, label=name)
-    ends = seconds["MDR, polyline", 0], max(seconds.values())
+    times = [row[2] for row in rows]
+    ends = min(times), max(times)
     ax.loglog(ends, [uncertainty] * 2, ":", color=GREY, label="uncertainty of the reference")
     ax.set(xlabel="CPU time [s]", ylabel="largest error / largest force")
+    ax.set(xlim=(1e-4, 1.0), ylim=(1e-15, 1))
+    sufficient(ax)
     save(figure, "history", footer(), [ax])
 
 

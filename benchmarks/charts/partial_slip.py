@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import aspher
 import numpy as np
-from drawing import BLUE, MDR_COLOR, panels, save, table
+from drawing import BLUE, MDR_COLOR, panels, save, sufficient, table
 from machine import footer
 from measure import medians
 
@@ -83,12 +83,18 @@ def main() -> None:
     seconds = medians(runs, SECONDS)
     rows = [(name, f"{n}²", seconds[name, n], *errors(n, run())) for (name, n), run in runs.items()]
     table(HEADER, rows, "partial_slip")
+    draw(rows)
+
+
+def draw(rows: list[tuple[str, str, float, float, float]]) -> None:
     figure, (ax,) = panels(1, 1, 3.0)
-    for name, color in zip(codes, (BLUE, MDR_COLOR), strict=True):
+    for name, color in (("ASPHER", BLUE), ("MDR", MDR_COLOR)):
         time, _largest, rms = np.array([row[2:] for row in rows if row[0] == name]).T
         ax.loglog(time, rms, "o-", color=color, label=name)
     label = "rms error of τ/(µp₀) for r < 0.9 a"
-    ax.set(xlabel="CPU time [s]", ylabel=label, ylim=(1e-17, 1))
+    ax.set(xlabel="CPU time [s]", ylabel=label, ylim=(1e-20, 1))
+    ax.set_xlim(1e-5, 100)
+    sufficient(ax)
     save(figure, "partial_slip", footer("aspher"), [ax])
 
 

@@ -97,15 +97,17 @@ def cycles(count: int) -> Iterator[Pair]:
 
 
 def paths(count: int, steps: int = 3) -> Iterator[Pair]:
-    """Forces and energy relative to the largest values on the path."""
+    """Paths with contact; forces and energy relative to their largest values."""
     draw = random.Random(5)
     for number in range(count):
         drawn = scene(draw)
         depth = float(contact(drawn)[1].depth)
         most = MU * E_STAR / G_STAR * depth
         path = history_generate.random_path(f"calibration {number}", steps, depth, most)
-        samples = history_reference.history(drawn.profile, path, MATERIAL)
         depths, shifts = np.transpose(path)
+        if not depths.max() > 0:
+            continue
+        samples = history_reference.history(drawn.profile, path, MATERIAL)
         loads = {"indentation_depth": depths, "tangential_displacement": shifts}
         found = history.solve(drawn.made, E_STAR, G_STAR, MU, **loads)
         error = 0.0

@@ -12,7 +12,7 @@ from time import thread_time
 
 import numpy as np
 import wear_ratio
-from drawing import BLUE, GREEN, GREY, MDR_COLOR, panels, save, table
+from drawing import BLUE, GREEN, GREY, MDR_COLOR, panels, save, sufficient, table
 from machine import footer
 from scipy.integrate import solve_ivp
 from tests.oracles.wear_explicit import Controls
@@ -89,6 +89,10 @@ def main() -> None:
     ]
     table(HEADER, rows, "wear_evolution")
     print(f"resolutions 96 and 64 differ by {doubt:.1e}")
+    draw(rows, doubt)
+
+
+def draw(rows: list[tuple[str, str, float, float]], doubt: float) -> None:
     figure, (ax,) = panels(1, 1, 3.0)
     for name, color in ((EXPLICIT, BLUE), (ORDINARY, GREEN), (MDR, MDR_COLOR)):
         points = np.array([row[2:] for row in rows if row[0] == name]).T
@@ -96,6 +100,8 @@ def main() -> None:
     ends = min(row[2] for row in rows), max(row[2] for row in rows)
     ax.loglog(ends, [doubt] * 2, ":", color=GREY, label="uncertainty of the reference")
     ax.set(xlabel="CPU time [s]", ylabel="largest error of the worn depth / d")
+    ax.set(xlim=(1e-2, 100), ylim=(1e-10, 1))
+    sufficient(ax)
     save(figure, "wear_evolution", footer(), [ax])
 
 

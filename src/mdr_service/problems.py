@@ -111,7 +111,7 @@ def document(error: ServiceError) -> dict[str, Any]:
 
 def from_validation(error: ValidationError, model: type[BaseModel] | None = None) -> ServiceError:
     """Return the failure of a model, without the values sent; the default is a request model."""
-    model = model or sentences.request_model(error.title)
+    model = model or sentences.REQUESTS.get(error.title)
     found = error.errors(include_url=False, include_input=False)
     if found[0]["type"] == "json_invalid":
         detail = sentences.of_json(found[0]["msg"])

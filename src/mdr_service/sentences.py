@@ -54,12 +54,8 @@ _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
 }
 _BOUNDS: Final = {"ge": "at least", "gt": "greater than", "le": "at most", "lt": "less than"}
 _MODELS: Final[Sequence[_Model]] = (BatchQuery, *(kind.request for kind in QUERIES.values()))
-_REQUESTS: Final = {model.__name__: model for model in _MODELS}
-
-
-def request_model(name: str) -> _Model | None:
-    """Return the model of a request by its name, which is the title of a ValidationError."""
-    return _REQUESTS.get(name)
+REQUESTS: Final[Mapping[str, _Model]] = {model.__name__: model for model in _MODELS}
+"""Models of requests by their name, which is the title of a ValidationError."""
 
 
 def path(error: ErrorDetails) -> Path:

@@ -67,6 +67,11 @@ class Column:
         number = float(self.values[row])
         return self.cells[row].as_py() if isnan(number) else number
 
+    def is_unreadable(self, row: int) -> bool:
+        """Return True if the cell of a number contains text that is not a number."""
+        is_text = self.field.type == "number" and _is_text(self.cells.type)
+        return bool(is_text and self.given[row] and isnan(self.values[row]))
+
     @property
     def output(self) -> Cells:
         """Column of the result: numbers are doubles, and NaN becomes an empty cell."""

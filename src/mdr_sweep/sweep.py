@@ -24,6 +24,7 @@ from mdr_sweep.spec import (
     ERROR,
     ONLY_IF_NAMED,
     QUANTITIES,
+    UNREADABLE,
     WARNING,
     Spec,
     SweepStatus,
@@ -124,7 +125,7 @@ def summary(batches: Iterable[pa.RecordBatch]) -> tuple[int, list[str]]:
         errors = batch.column(ERROR)
         for place in np.flatnonzero(errors.is_valid()).tolist():
             error = errors[place].as_py()
-            reason = _NUMBER.sub("…", error)
+            reason = _NUMBER.sub("…", error.partition(UNREADABLE)[0])
             count, first, text = reasons.get(reason, (0, rows + place + 1, error))
             reasons[reason] = count + 1, first, text
         rows += len(errors)

@@ -23,7 +23,7 @@ from mdr_service.queries.contacts import body, control, friction, yields
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.flat import nested
 from mdr_sweep.request_columns import Column, Values, read_columns
-from mdr_sweep.spec import ERROR, TEXTS, WARNING, Spec
+from mdr_sweep.spec import ERROR, TEXTS, UNREADABLE, WARNING, Spec
 
 Rows = NDArray[np.intp]
 Results = dict[str, NDArray[Any]]
@@ -52,6 +52,10 @@ def solve(spec: Spec, batch: pa.RecordBatch) -> pa.RecordBatch:
     for row in np.flatnonzero(~solved).tolist():
         case = _solve_alone(spec, _request(spec, columns, row))
         solved[row] = WARNING in case
+        texts = [str(column.cells[row]) for column in columns.values() if column.is_unreadable(row)]
+        if texts:
+            # The column of the result has no place for them.
+            case[ERROR] += UNREADABLE + ", ".join(map(repr, texts))
         for name, value in case.items():
             results[name][row] = value
     found = dict(zip(batch.schema.names, batch.columns, strict=True))

@@ -151,7 +151,9 @@ def test_grid_equals_the_table_of_its_cases(folder: Path) -> None:
     assert result.select([*QUANTITIES["normal"], "warning", "error"]).to_pylist() == expected
 
 
-def test_csv_gives_the_same_numbers_as_parquet(folder: Path) -> None:
+def test_csv_gives_the_same_numbers_as_parquet_and_keeps_unreadable_text(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     rows = random_cases("cone", "tangential", 30) + random_cases("sphere", "tangential", 30)
     rows[7]["profile.slope"] = None
     given = pa.Table.from_batches([table(rows)])
@@ -182,6 +184,9 @@ def test_csv_gives_the_same_numbers_as_parquet(folder: Path) -> None:
     for row in (2, 4, 5):
         assert result[row]["material.e_star"] == ""
         assert result[row]["error"].startswith("/material/e_star ")
+        assert result[row]["error"].endswith(f"; read '{rows[row]['material.e_star']}'")
+    # All of them have one reason.
+    assert "  3  /material/e_star " in capsys.readouterr().err
     assert float(result[6]["material.e_star"]) == 1e9
 
 

@@ -202,7 +202,8 @@ def checked(
 
     Raises InputError if a value overflows, and DefectError if one is NaN without an overflow.
     """
-    suspect = {name: array for name, array in values.items() if not _finite(array)}
+    numbers = {name: array for name, array in values.items() if array.dtype.kind == "f"}
+    suspect = {name: array for name, array in numbers.items() if not every(np.isfinite(array))}
     for name, array in suspect.items():
         stray = np.isinf(array) & ~np.asarray((infinite or {}).get(name, False))
         if stray.any():
@@ -213,10 +214,6 @@ def checked(
         if np.isnan(array).any():
             raise DefectError(f"{name} is not a number")
     return values
-
-
-def _finite(values: Array) -> bool:
-    return values.dtype.kind != "f" or every(np.isfinite(values))
 
 
 def response(
