@@ -9,17 +9,16 @@ Source: mindlin-deresiewicz; notes, §15.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import Any, ClassVar, Final
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import least_squares
 
-from mdr_core import residuals, tangential, validity
+from mdr_core import residuals, tangential
 from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
+from mdr_core.estimation import Estimate, Precision, minimum
 from mdr_core.normal import NormalContact
-from mdr_core.residuals import FALSE_ALARM
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_core.validation import as_curve, require_not_negative, require_type, single
@@ -35,9 +34,9 @@ _STEPS, _CONVERGED = 100, 8 * EPS
 _RANGE: Final = 15.0
 # Step of a difference of logarithms about the result, and of C in its unit.
 _STEP: Final = 1e-5
-# Half width of an interval of 95 % in log G* or log mu, over the error, and at most; and the least
-# singular value of the slopes, of unit columns. Source: notes, §15.
-_HALF, _WIDEST, _SAME = 1.96, 0.5, 1e-8
+# Half width of an interval of 95 % in log G* or log mu, over the error, and at most. Source: notes,
+# §15.
+_HALF, _WIDEST = 1.96, 0.5
 # Compliance over its standard error below which zero is as likely: the sum of squares exceeds its
 # minimum by a tenth of the variance.
 _NO_WORSE: Final = 0.1**0.5
@@ -49,45 +48,28 @@ _CAUSES: Final = {
 _CODES: Final = {"two_branches": "misfit", "drift": "correlated_noise"}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class LoopFit(validity.ContactResults):
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class LoopFit(Estimate):
     """Fitted parameters of a loop with their standard errors."""
 
-    fit: tuple[str, ...]
-    """Names of the fitted parameters, in the order of `standard_errors` and `correlation`."""
     turning: TangentialContact
     """Contact at the turning points of the loop, as on first loading."""
     force_offset: float
     """F_0, the force in the middle of the loop [force]."""
     rig_compliance: float
     """C, as given or fitted [length/force]."""
-    standard_errors: Array
-    """Standard deviations of the fitted parameters, from the residuals, shape (n,)."""
-    correlation: Array
-    """Their correlation, shape (n, n) [1]."""
     tangential_displacement: Array
     """Measured displacements [length], shape (k,)."""
     tangential_force: Array
     """Fitted forces [force], shape (k,)."""
-    residual: Array
-    """Measured less fitted forces [force], shape (k,)."""
-    noise: float
-    """Standard deviation of the forces, by the residuals [force]."""
-    misfit: float
-    """Probability that residuals of the right model are as far from noise as these [1]."""
     dissipated_energy_error: float
     """Standard deviation of `dissipated_energy`, by those of the parameters [force length]."""
-    error_estimate: float
-    """Bound on the numerical error of the parameters, over their sizes [1]."""
-    notices: tuple[Notice, ...]
-    """Warnings about the residuals and the parameters."""
     quantities: ClassVar[tuple[str, ...]] = (
         *("fit", "g_star", "friction_coefficient", "force_offset", "rig_compliance"),
         *("standard_errors", "correlation", "noise", "misfit"),
         *("dissipated_energy", "dissipated_energy_error"),
         *("tangential_displacement", "tangential_force", "residual"),
     )
-    method: ClassVar[str] = "least_squares"
 
     @property
     def solved(self) -> TangentialContact:
@@ -286,42 +268,27 @@ class _Loop:
     def result(self) -> LoopFit:
         """Return the fit, or an InputError."""
         start, measured = self.start(), self.force / self.size
-        low, high = np.full((2, start.size), inf) * [[-1], [1]]
-        low[:2], high[:2], low[3:] = start[:2] - _RANGE, start[:2] + _RANGE, 0.0
+        bounds = np.full((2, start.size), inf) * [[-1], [1]]
+        bounds[:, :2], bounds[0, 3:] = np.add.outer([-_RANGE, _RANGE], start[:2]), 0.0
 
         def left(x: Array) -> Array:
             return self.forces(x) - measured
 
-        tight: dict[str, Any] = {"x_scale": "jac", "ftol": EPS, "xtol": EPS, "gtol": None}
-        x = least_squares(left, start, self.slopes, (low, high), **tight).x
-        slopes, residual = self.slopes(x), -left(x)
-        scale = np.linalg.norm(slopes, axis=0)
+        x = minimum(left, start, self.slopes, bounds)
+        residual = -left(x)
         scatter = float(np.sqrt(residual @ residual / (residual.size - start.size)))
-        if not scale.all():
-            raise self.refused()
-        directions, values, effects = np.linalg.svd(slopes / scale, full_matrices=False)
-        if values[-1] < _SAME:
-            raise self.refused()
-        inverse = effects.T / values
-        deviations = np.linalg.norm(inverse, axis=1)
+        try:
+            precision = Precision.of(self.slopes(x), self.fit, "tangential_displacement")
+        except InputError:
+            raise self.refused() from None
         # The model is exact to rounding.
-        errors = max(scatter, EPS) * deviations / scale
-        # The step of Gauss and Newton to the minimum; the search ends where squares no longer fall.
-        step = np.abs(inverse @ (directions.T @ residual)).max()
-        unfinished = 2 * float(step / np.linalg.norm(measured))
+        errors = max(scatter, EPS) * precision.deviations
         if _HALF * errors[:2].max() > _WIDEST:
             raise self.refused()
-        code, misfit = residuals.worst(
-            residuals.misfit(self.displacement, slopes, residual, measured, in_time=True)
-        )
-        found: list[Notice] = []
-        if misfit < FALSE_ALARM:
-            code = _CODES.get(code, code)
-            message = (
-                f"the residuals are not noise (probability {misfit:.1g}): {_CAUSES[code]}, and the "
-                "standard errors do not hold"
-            )
-            found.append(Notice(code, message, misfit, FALSE_ALARM))
+        tests = residuals.misfit(self.displacement, precision.q, residual, measured, in_time=True)
+        code, misfit = residuals.worst(tests)
+        code = _CODES.get(code, code)
+        found = [*residuals.doubts(code, misfit, _CAUSES[code])]
         units = [*np.exp(x[:2]), self.size, self.amplitude / self.size][: start.size]
         if start.size > 3 and x[3] < _NO_WORSE * errors[3]:
             message = "no compliance of the rig is seen: rig_compliance is at its bound 0"
@@ -329,21 +296,22 @@ class _Loop:
         law = self.first_loading(x)
         most = float(law.tangential_displacement[-1])
         moduli = np.exp(x[:2]).tolist()
+        slopes = self.energy_slopes(x) / precision.scale
         return LoopFit(
-            self.fit,
-            tangential.solve(self.contact, *moduli, tangential_displacement=most),
-            float(x[2]) * self.size,
-            self.compliance(x),
-            errors * units,
-            inverse @ inverse.T / np.multiply.outer(deviations, deviations),
-            self.displacement,
-            self.force - residual * self.size,
-            residual * self.size,
-            scatter * self.size,
-            misfit,
-            scatter * float(np.linalg.norm(self.energy_slopes(x) / scale @ inverse)),
-            float(law.error_estimate / values[-1]) + unfinished,
-            tuple(found),
+            fit=self.fit,
+            turning=tangential.solve(self.contact, *moduli, tangential_displacement=most),
+            force_offset=float(x[2]) * self.size,
+            rig_compliance=self.compliance(x),
+            standard_errors=errors * units,
+            correlation=precision.correlation,
+            tangential_displacement=self.displacement,
+            tangential_force=self.force - residual * self.size,
+            residual=residual * self.size,
+            noise=scatter * self.size,
+            misfit=misfit,
+            dissipated_energy_error=scatter * float(np.linalg.norm(slopes @ precision.inverse)),
+            error_estimate=precision.error(float(law.error_estimate), residual, measured),
+            notices=tuple(found),
         )
 
     def refused(self) -> InputError:
