@@ -138,7 +138,7 @@ def _prepared(q: Array, residual: Array, force: Array) -> tuple[Array, Array, fl
     r = left = residual - q @ (q.T @ residual)
     for _ in range(_STEPS):
         scale = _BY_MEDIAN * float(np.median(np.abs(left))) or float(np.std(left)) or 1.0
-        root = np.sqrt(np.minimum(1, _HUBER * scale / np.maximum(np.abs(left), TINY)))
+        root = np.sqrt(_HUBER * scale / np.maximum(np.abs(left), _HUBER * scale))
         left = r - q @ np.linalg.lstsq(q * root[:, None], r * root, rcond=None)[0]
     free = max(r.size - q.shape[1], 1)
     scale = _BY_MEDIAN * float(np.median(np.abs(left))) * np.sqrt(r.size / free)

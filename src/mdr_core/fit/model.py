@@ -109,7 +109,8 @@ class Model:
         else:
             contact = normal.solve(self.profile, 1.0, indentation_depth=depth)
             force, slope = contact.normal_force, contact.normal_stiffness
-        return force, np.where(pressed > 0, slope, 0.0), np.zeros_like(pressed)
+        force, slope = np.where(pressed > 0, [force, slope], 0.0)
+        return force, slope, np.zeros_like(slope)
 
     def _adhesive(self, pressed: Array, ratio: float) -> tuple[Array, Array, Array]:
         force, by_depth, by_ratio = np.zeros((3, *pressed.shape))
@@ -185,6 +186,7 @@ class Model:
             raise InputError(("normal_force",), detail)
         return self._refined(start, limit, high) if self.fit else start
 
+    @np.errstate(all="ignore")
     def _refined(self, start: Parameters, low: float, high: float) -> Parameters:
         """Return the parameters of the nearest minimum.
 
@@ -210,7 +212,7 @@ class Model:
             forces, slopes = self.at(values(np.frombuffer(place)))
             return (forces - self.force) / size, slopes * unit / size
 
-        with suppress(ValueError, np.linalg.LinAlgError), np.errstate(all="ignore"):
+        with suppress(ValueError, np.linalg.LinAlgError):
             found = minimum(
                 lambda x: evaluated(x.tobytes())[0],
                 first,

@@ -81,7 +81,10 @@ def result(model: Model, found: Parameters) -> Fit:
     forces, slopes = model.at(found)
     model.require_points(int(np.sum(forces != found["force_offset"])))
     residual = model.force - forces
-    scatter = float(np.sqrt(np.sum(np.square(residual)) / model.free))
+    # The model is exact to rounding.
+    scatter = max(
+        float(np.sqrt(np.sum(np.square(residual)) / model.free)), EPS * float(np.abs(forces).max())
+    )
     precision = Precision.of(slopes, model.fit, "indentation_depth")
     contact = _deepest(model, found)
     interpolated = 0.0 if model.on_layer is None else model.on_layer.error
@@ -99,9 +102,7 @@ def result(model: Model, found: Parameters) -> Fit:
         residual=residual,
         noise=model.noise or scatter,
         misfit=misfit,
-        error_estimate=precision.error(
-            contact.error_estimate + interpolated, residual, model.force
-        ),
+        error_estimate=precision.error(contact.error_estimate + interpolated, residual, forces),
         notices=(
             *_doubts(model, code, misfit),
             *_open(model, found, scatter, precision),
