@@ -52,7 +52,9 @@ _OTHER_OPTIONS: Final = frozenset(
 )
 # Names of parameters that cannot be words of a sentence.
 _NAME: Final = re.compile(r"\w+_\w+")
-_ONCE: Final = "is given more than once; several loads are a range (--help), or JSON"
+_ONCE: Final = (
+    "is given more than once; several loads are a list such as 1.0,2.0, or a range (--help)"
+)
 _REQUEST: Final = "a request is a JSON object"
 _NOT_NUMBERS: Final = "a table needs --table, a series a request in JSON"
 _BY_OPTIONS: Final = "; give a table with --table, and numbers with options (--help)"

@@ -17,6 +17,7 @@ from scipy.special import fdtrc, ndtr, ndtri
 from scipy.stats import rankdata
 
 from mdr_core.doubles import TINY
+from mdr_core.errors import Notice
 from mdr_core.typing import Array
 
 FALSE_ALARM: Final = 0.01
@@ -72,19 +73,19 @@ def rank(x: Array) -> Array:
 
 
 def misfit(
-    depth: Array, slopes: Array, residual: Array, force: Array, *, in_time: bool = False
+    depth: Array, q: Array, residual: Array, force: Array, *, in_time: bool = False
 ) -> dict[str, float]:
     """Return the probability of residuals like these by chance, by the warning that tells of it.
 
     Parameters
     ----------
     depth, force : the curve in its order, shape (k,).
-    slopes : derivatives of the fitted forces in the parameters, shape (k, p).
+    q : orthonormal slopes of the fitted forces in the parameters, shape (k, p).
     residual : measured less fitted forces, shape (k,).
     in_time : True to test neighbours in the order of the curve, and for a drift, in place of the
         scatter over the depth.
     """
-    q, left, cut, step = _prepared(slopes, residual, force)
+    left, cut, step = _prepared(q, residual, force)
     size = float(np.sqrt(np.mean(np.square(residual))))
     if size <= ROUNDING * np.abs(force).max() or size < _ROUNDED * step:
         return {}
@@ -115,16 +116,29 @@ def worst(found: Mapping[str, float]) -> tuple[str, float]:
     return code, min(1.0, len(found) * min(found.values()) if found else 1.0)
 
 
-def _prepared(slopes: Array, residual: Array, force: Array) -> tuple[Array, Array, Array, float]:
-    """Return orthonormal slopes, residuals of a robust fit, those cut, and the step of rounding.
+def doubts(code: str, misfit: float, cause: str, remedy: str = "") -> tuple[Notice, ...]:
+    """Return the warning that residuals are not noise, if they are not.
+
+    Parameters: the code and the joint probability, see `worst`; the cause, and a remedy after it.
+    """
+    if misfit >= FALSE_ALARM:
+        return ()
+    message = (
+        f"the residuals are not noise (probability {misfit:.1g}): {cause}, and the standard errors "
+        f"do not hold{remedy}"
+    )
+    return (Notice(code, message, misfit, FALSE_ALARM),)
+
+
+def _prepared(q: Array, residual: Array, force: Array) -> tuple[Array, Array, float]:
+    """Return residuals of a robust fit, those cut, and the step of rounding.
 
     The robust fit is linear about the least squares: another minimum would change the sizes.
     """
-    q, _ = np.linalg.qr(slopes)
     r = left = residual - q @ (q.T @ residual)
     for _ in range(_STEPS):
         scale = _BY_MEDIAN * float(np.median(np.abs(left))) or float(np.std(left)) or 1.0
-        root = np.sqrt(np.minimum(1, _HUBER * scale / np.maximum(np.abs(left), TINY)))
+        root = np.sqrt(_HUBER * scale / np.maximum(np.abs(left), _HUBER * scale))
         left = r - q @ np.linalg.lstsq(q * root[:, None], r * root, rcond=None)[0]
     free = max(r.size - q.shape[1], 1)
     scale = _BY_MEDIAN * float(np.median(np.abs(left))) * np.sqrt(r.size / free)
@@ -134,7 +148,7 @@ def _prepared(slopes: Array, residual: Array, force: Array) -> tuple[Array, Arra
     parts = steps / steps.min(initial=np.inf)
     # Decimal numbers are multiples of the step within their own rounding.
     rounded = steps.size and np.abs(parts - np.round(parts)).max() < 1e-3
-    return q, left, cut - q @ (q.T @ cut), float(steps.min()) if rounded else 0.0
+    return left, cut - q @ (q.T @ cut), float(steps.min()) if rounded else 0.0
 
 
 def _polynomials(x: Array, degree: int) -> Array:

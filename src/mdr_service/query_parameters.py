@@ -1,4 +1,4 @@
-"""Queries by parameters: numbers, at most one range, and names separated by commas.
+"""Queries by parameters: numbers, lists and at most one range of them, and names.
 
 Each parameter corresponds to a field of the request, and is described by the schema of that field.
 The request is then validated as usual; an error in a field is reported for its parameter.
@@ -8,11 +8,10 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import partial
 from typing import Annotated, Any, ClassVar, Final, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, create_model
+from pydantic import BeforeValidator, Field, WithJsonSchema, create_model
 from pydantic_core import PydanticCustomError
 
 from mdr_core import materials
@@ -31,6 +30,9 @@ from mdr_service.settings import SETTINGS
 
 # A number is written as in JSON, or with a leading plus, as in spreadsheets.
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+# A number with a decimal comma, or with commas between thousands.
+_ONE_NUMBER: Final = re.compile(r"[+-]?(?:[\d.]*,\d+|\d{1,3}(?:,\d{3})+(?:\.\d*)?)", re.ASCII)
+_SEVERAL: Final = "; give several as a list such as 1.0,2.0, or as a range by _from, _to and n"
 _WHOLE: Final = re.compile(r"\d{1,9}", re.ASCII)
 _SPACINGS: Final[Mapping[str, Any]] = {"linear": np.linspace, "log": np.geomspace}
 
@@ -44,6 +46,13 @@ def _number(text: str, advice: str = "") -> float:
     return value
 
 
+def _load(text: str) -> float | list[float]:
+    """Return a number, or the numbers of a list, unless its commas can be those of a number."""
+    if "," not in text or _ONE_NUMBER.fullmatch(text):
+        return _number(text, _SEVERAL)
+    return [_number(each.strip(), _SEVERAL) for each in text.split(",")]
+
+
 def _whole(text: str) -> int:
     if not _WHOLE.fullmatch(text):
         raise PydanticCustomError("whole", "must be a whole number of at most nine digits")
@@ -52,9 +61,8 @@ def _whole(text: str) -> int:
 
 # A schema that admits null keeps Swagger UI from checking the text, since it takes no exponents.
 _Number = Annotated[float, BeforeValidator(_number)] | None
-# Type and schema of a parameter that can be a range.
-_SEVERAL: Final = "; give several as a range, by _from, _to and n, or as a list in JSON"
-_Load = Annotated[float, BeforeValidator(partial(_number, advice=_SEVERAL))] | None
+# Type and schema of a parameter that can be a list, or a range.
+_Load = Annotated[Any, BeforeValidator(_load), WithJsonSchema({"type": "number"})] | None
 _Whole = Annotated[int, BeforeValidator(_whole)] | None
 _Length = Annotated[int, Field(ge=2, le=SETTINGS.max_length), BeforeValidator(_whole)] | None
 # Types of parameters by the JSON type of the field.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -163,6 +165,46 @@ def test_rig_that_the_loop_does_not_show_is_at_its_bound() -> None:
     assert bounds > 10 - 5 * np.sqrt(5)
 
 
+OFFSETS = ["g_star", "friction_coefficient", "displacement_offset", "force_offset"]
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"fit": OFFSETS, "rig_compliance": 0.0},
+        {"g_star": G_STAR},
+        {"friction_coefficient": MU, "fit": ["force_offset", "g_star", "rig_compliance"]},
+        {"g_star": G_STAR, "friction_coefficient": MU, "rig_compliance": 0.0},
+        {"g_star": G_STAR, "rig_compliance": 0.0, "fit": ["displacement_offset", *OFFSETS[1:2]]},
+    ],
+    ids="-".join,
+)
+def test_any_parameters_are_fitted_or_given(given: dict[str, Any]) -> None:
+    contact, u, force = measured(Paraboloid(0.01), 0.8)
+    offset = 0.0 if given.get("fit", [""])[0] == "displacement_offset" else 0.4
+    found = hysteresis.solve(
+        contact, tangential_displacement=u + 7e-6, tangential_force=force + offset, **given
+    )
+    expected = (G_STAR, MU, offset, 0.0, 7e-6)
+    scale = (G_STAR, MU, 1.0, 1e-9, 1e-6)
+    for name, value, unit in zip(hysteresis.PARAMETERS, expected, scale, strict=True):
+        assert getattr(found, name) == pytest.approx(value, rel=0, abs=1e-9 * unit), name
+    assert len(found.standard_errors) == len(found.fit)
+
+
+def test_intervals_cover_the_middle_of_the_loop() -> None:
+    contact, u, force = measured(Paraboloid(0.01), 0.8)
+    random, inside, trials = np.random.default_rng(6), np.zeros(4), 200
+    for _ in range(trials):
+        noisy = force + random.normal(0.0, 0.02 * force.max(), force.size)
+        loop = {"tangential_displacement": u + 7e-6, "tangential_force": noisy}
+        found = hysteresis.solve(contact, **loop, fit=OFFSETS, rig_compliance=0.0)
+        got = [getattr(found, name) for name in found.fit]
+        inside += np.abs(np.subtract(got, [G_STAR, MU, 7e-6, 0.0])) < 1.99 * found.standard_errors
+    # Five standard deviations of the count on either side.
+    assert np.all(np.abs(inside / trials - 0.95) < 5 * np.sqrt(0.95 * 0.05 / trials))
+
+
 @pytest.mark.parametrize("profile", KINDS[:2], ids=lambda each: each.kind)
 def test_intervals_of_95_per_cent_contain_the_parameters(profile: Profile) -> None:
     contact, u, force = measured(profile, 0.8)
@@ -190,6 +232,11 @@ def test_what_does_not_determine_the_parameters_is_rejected() -> None:
         (stuck, {"tangential_force": 3e7 * u}, "leaves G\\* or mu open"),
         (stuck, {"tangential_force": 3e7 * u, "rig_compliance": None}, "give rig_compliance"),
         (contact, {"rig_compliance": -1e-9}, "negative"),
+        (contact, {"g_star": 0.0}, "positive"),
+        (contact, {"fit": []}, "must hold some of"),
+        (contact, {"fit": ["g_star", "e_star"]}, "must hold some of"),
+        (contact, {"fit": ["force_offset"]}, "needed unless it is fitted"),
+        (contact, {"fit": ["rig_compliance"], "g_star": 1.0, "friction_coefficient": 1.0}, "leave"),
         (contact, {"rig_compliance": [0.0, 1.0]}, "single number"),
         (normal.solve(Paraboloid(1.0), 1.0, normal_force=[1.0, 2.0]), {}, "single normal load"),
     ):

@@ -134,6 +134,15 @@ def test_loop_equals_the_core(client: Client) -> None:
     rigid = client.post("/v1/tangential/fit", loop | {"rig_compliance": 0}).json()
     assert rigid["g_star"][0] < 3e4
     assert "misfit" in [warning["code"] for warning in rigid["warnings"]]
+    # Given parameters are not fitted, and two bodies have a shear modulus.
+    names = ["rig_compliance", "force_offset", "displacement_offset"]
+    fitted = client.post("/v1/tangential/fit", loop | {"fit": names}).json()
+    assert fitted["errors"][0]["pointer"] == "/material/g_star"
+    known = {"material": {"e_star": 48e3, "g_star": 4e4}, "friction_coefficient": 0.3}
+    fitted = client.post("/v1/tangential/fit", loop | {"fit": names} | known).json()
+    assert fitted["fit"] == names
+    off = np.subtract([fitted[name][0] for name in names], [2.4e-4, 0.03, 0.0])
+    assert np.abs(off / fitted["standard_errors"]).max() < 3
     depth = {"indentation_depth": float(contact.indentation_depth)}
     other = {name: value for name, value in loop.items() if name != "normal_force"} | depth
     by_depth = client.post("/v1/tangential/fit", other).json()

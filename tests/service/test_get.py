@@ -114,10 +114,31 @@ def test_unknown_format_is_not_acceptable(client: Client) -> None:
     assert (answer.status_code, answer.json()["type"]) == (406, "urn:mdr:problem:not-acceptable")
 
 
-@pytest.mark.parametrize("loads", ["1,10", "1:10", "1;10"])
-def test_list_of_loads_is_told_how_to_give_a_range(client: Client, loads: str) -> None:
+@pytest.mark.parametrize("loads", ["1,2,3", "1.0,2.0", "1e0, 2", "+1,2.5,3"])
+def test_list_of_loads_equals_the_list_of_the_request(client: Client, loads: str) -> None:
     response = client.get(at("normal", {**NORMAL, "normal_force": loads}))
-    advice = "; give several as a range, by _from, _to and n, or as a list in JSON"
+    assert response.json()["normal_force"] == [float(each) for each in loads.split(",")]
+
+
+@pytest.mark.parametrize(
+    "loads",
+    [
+        "1,10",
+        "1:10",
+        "1;10",
+        "0,5",
+        "-0,5",
+        "1.234,5",
+        "1,234",
+        "1,234.5",
+        "1,234,567",
+        "1,2,",
+        ",1",
+    ],
+)
+def test_number_with_a_comma_is_told_how_to_give_a_list(client: Client, loads: str) -> None:
+    response = client.get(at("normal", {**NORMAL, "normal_force": loads}))
+    advice = "; give several as a list such as 1.0,2.0, or as a range by _from, _to and n"
     assert response.json()["detail"].endswith(advice)
     # Of a radius of the profile there is one.
     response = client.get(at("normal", {**NORMAL, "radius": loads}))

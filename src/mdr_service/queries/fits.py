@@ -69,18 +69,21 @@ def solve_loop(query: LoopQuery) -> LoopFit:
     require_one_of(query, "indentation_depth", "normal_force")
     if query.material.model_fields_set & ADHESION:
         raise InputError(("material", "work_of_adhesion"), adhesion.AdhesiveContact.unusable)
-    if query.material.has("g_star"):
-        raise InputError(("material", "g_star"), "is fitted: leave it out")
     name = "normal_force" if query.has("normal_force") else "indentation_depth"
+    # Bodies always have a shear modulus, which is that of the contact only if it is not fitted.
+    is_known = query.material.has("g_star") or "g_star" not in (query.fit or ["g_star"])
     # The load is a member of the request itself.
-    with pointing({"load": ()}):
+    with pointing({"load": (), "g_star": ("material", "g_star")}):
         contact = normal.solve(**body(query), **{name: getattr(query, name)})
-    return hysteresis.solve(
-        contact,
-        tangential_displacement=query.tangential_displacement,
-        tangential_force=query.tangential_force,
-        rig_compliance=query.rig_compliance,
-    )
+        return hysteresis.solve(
+            contact,
+            tangential_displacement=query.tangential_displacement,
+            tangential_force=query.tangential_force,
+            fit=query.fit,
+            g_star=query.material.effective.g_star if is_known else None,
+            friction_coefficient=query.friction_coefficient,
+            rig_compliance=query.rig_compliance,
+        )
 
 
 def fit_result(query: FitQuery | LoopQuery, source: Fit | LoopFit) -> Result:

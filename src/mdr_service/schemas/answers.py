@@ -139,46 +139,11 @@ class NormalAnswer(ContactAnswer):
     )
 
 
-class FitAnswer(SolvedAnswer):
-    """Parameters in lists of one entry, and the curve."""
+class EstimateAnswer(SolvedAnswer):
+    """Fitted parameters with their errors, and residuals."""
 
     fit: list[str] = Field(description="Fitted parameters, in the order of their errors.")
-    e_star: list[float] = _pressure("Effective modulus E*")
-    contact_point: list[float] = _length(
-        "Contact point, the depth of first contact, in the depths of the curve"
-    )
-    force_offset: list[float] = _force("Force offset, the force without contact")
-    work_of_adhesion: list[float] = quantity("force/length", "Work of adhesion, an energy per area")
-    standard_errors: list[float] = quantity(
-        "as the parameter", "Standard deviations of the fitted parameters"
-    )
-    correlation: list[list[float]] = _number("Correlation of the fitted parameters")
-    noise: list[float] = _force("Standard deviation of the forces")
-    misfit: list[float] = _number(
-        "Probability that residuals of the right shape are as far from noise; below 0.01 with a "
-        "warning that names the likeliest fault"
-    )
-    youngs_modulus: list[float] = _pressure("Young's modulus of the sample", default=None)
-    youngs_modulus_error: list[float] = _pressure(
-        "Its standard deviation, by that of E*", default=None
-    )
-    indentation_depth: list[float] = _length(
-        "Measured depths; with adhesion without those between the least force and the pull-off"
-    )
-    normal_force: list[float] = _force("Fitted forces")
-    residual: list[float] = _force("Measured less fitted forces")
-
-
-class LoopAnswer(SolvedAnswer):
-    """Parameters in lists of one entry, and the loop."""
-
-    fit: list[str] = Field(description="Fitted parameters, in the order of their errors.")
-    g_star: list[float] = _pressure("Effective shear modulus G*")
-    friction_coefficient: list[float] = _number("Coefficient of friction µ")
-    force_offset: list[float] = _force("Force offset, the force in the middle of the loop")
-    rig_compliance: list[float] = quantity(
-        "length/force", "Compliance of the rig, as given or fitted"
-    )
+    force_offset: list[float] = _force("Force offset, without contact or in the middle of a loop")
     standard_errors: list[float] = quantity(
         "as the parameter", "Standard deviations of the fitted parameters"
     )
@@ -188,11 +153,42 @@ class LoopAnswer(SolvedAnswer):
         "Probability that residuals of the right model are as far from noise; below 0.01 with a "
         "warning that names the likeliest fault"
     )
+    residual: list[float] = _force("Measured less fitted forces")
+
+
+class FitAnswer(EstimateAnswer):
+    """Parameters in lists of one entry, and the curve."""
+
+    e_star: list[float] = _pressure("Effective modulus E*")
+    contact_point: list[float] = _length(
+        "Contact point, the depth of first contact, in the depths of the curve"
+    )
+    work_of_adhesion: list[float] = quantity("force/length", "Work of adhesion, an energy per area")
+    youngs_modulus: list[float] = _pressure("Young's modulus of the sample", default=None)
+    youngs_modulus_error: list[float] = _pressure(
+        "Its standard deviation, by that of E*", default=None
+    )
+    indentation_depth: list[float] = _length(
+        "Measured depths; with adhesion without those between the least force and the pull-off"
+    )
+    normal_force: list[float] = _force("Fitted forces")
+
+
+class LoopAnswer(EstimateAnswer):
+    """Parameters in lists of one entry, and the loop."""
+
+    g_star: list[float] = _pressure("Effective shear modulus G*")
+    friction_coefficient: list[float] = _number("Coefficient of friction µ")
+    rig_compliance: list[float] = quantity(
+        "length/force", "Compliance of the rig, as given or fitted"
+    )
+    displacement_offset: list[float] = _length(
+        "Displacement offset, the displacement in the middle of the loop"
+    )
     dissipated_energy: list[float] = _energy("Energy dissipated in a cycle of the fitted loop")
     dissipated_energy_error: list[float] = _energy("Its standard deviation")
     tangential_displacement: list[float] = _length("Measured displacements")
     tangential_force: list[float] = _force("Fitted forces")
-    residual: list[float] = _force("Measured less fitted forces")
 
 
 class HistoryAnswer(SolvedAnswer):

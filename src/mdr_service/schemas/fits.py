@@ -10,6 +10,7 @@ from mdr_service.schemas.contacts import (
     ElasticLayer,
     Material,
     Query,
+    friction,
     layer,
     thickness,
 )
@@ -18,6 +19,9 @@ from mdr_service.schemas.quantities import Signed, Size, left_out, positive, qua
 from mdr_service.settings import SETTINGS
 
 Fitted = Literal["e_star", "contact_point", "force_offset", "work_of_adhesion"]
+LoopFitted = Literal[
+    "g_star", "friction_coefficient", "force_offset", "rig_compliance", "displacement_offset"
+]
 _CURVE: dict[str, Any] = {"min_length": 3, "max_length": SETTINGS.max_length, "fail_fast": True}
 
 
@@ -79,9 +83,17 @@ class LoopQuery(Query):
         "length", "Measured displacements in the order of time, of a steady loop", **_CURVE
     )
     tangential_force: list[Signed] = quantity("force", "Measured tangential forces", **_CURVE)
+    fit: Annotated[list[LoopFitted], OnceEach] = Field(
+        default=None,
+        description="Parameters to fit; by default `force_offset` and those of `g_star` (in "
+        "`material`), `friction_coefficient` and `rig_compliance` that are left out. Unless "
+        "fitted, `force_offset` is 0 and `displacement_offset` the middle of the displacements.",
+        min_length=1,
+    )
+    friction_coefficient: float = friction(default=None)
     rig_compliance: Size = quantity(
         "length/force",
         "Compliance C of the rig in series with the contact, 0 of displacements measured at the "
-        "contact; fitted if it is left out, which needs full slip",
+        "contact; to fit it needs full slip",
         default=None,
     )

@@ -6,23 +6,28 @@ After a reversal of the displacement the force follows the law of first loading,
 Source: mindlin-deresiewicz; notes, §15.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from math import inf
-from typing import Any, ClassVar, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import least_squares
 
-from mdr_core import residuals, tangential, validity
+from mdr_core import residuals, tangential
 from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
+from mdr_core.estimation import Precision, minimum
+from mdr_core.hysteresis.result import PARAMETERS, LoopFit
 from mdr_core.normal import NormalContact
-from mdr_core.residuals import FALSE_ALARM
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
-from mdr_core.validation import as_curve, require_not_negative, require_type, single
+from mdr_core.validation import (
+    as_curve,
+    require_not_negative,
+    require_positive,
+    require_type,
+    single,
+)
 
 # Amplitudes that are tried first, over that of full slip; parts of the latter in the rig; points of
 # first loading between which the forces are interpolated for this.
@@ -35,9 +40,9 @@ _STEPS, _CONVERGED = 100, 8 * EPS
 _RANGE: Final = 15.0
 # Step of a difference of logarithms about the result, and of C in its unit.
 _STEP: Final = 1e-5
-# Half width of an interval of 95 % in log G* or log mu, over the error, and at most; and the least
-# singular value of the slopes, of unit columns. Source: notes, §15.
-_HALF, _WIDEST, _SAME = 1.96, 0.5, 1e-8
+# Half width of an interval of 95 % in log G* or log mu, over the error, and at most. Source: notes,
+# §15.
+_HALF, _WIDEST = 1.96, 0.5
 # Compliance over its standard error below which zero is as likely: the sum of squares exceeds its
 # minimum by a tenth of the variance.
 _NO_WORSE: Final = 0.1**0.5
@@ -49,82 +54,14 @@ _CAUSES: Final = {
 _CODES: Final = {"two_branches": "misfit", "drift": "correlated_noise"}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class LoopFit(validity.ContactResults):
-    """Fitted parameters of a loop with their standard errors."""
-
-    fit: tuple[str, ...]
-    """Names of the fitted parameters, in the order of `standard_errors` and `correlation`."""
-    turning: TangentialContact
-    """Contact at the turning points of the loop, as on first loading."""
-    force_offset: float
-    """F_0, the force in the middle of the loop [force]."""
-    rig_compliance: float
-    """C, as given or fitted [length/force]."""
-    standard_errors: Array
-    """Standard deviations of the fitted parameters, from the residuals, shape (n,)."""
-    correlation: Array
-    """Their correlation, shape (n, n) [1]."""
-    tangential_displacement: Array
-    """Measured displacements [length], shape (k,)."""
-    tangential_force: Array
-    """Fitted forces [force], shape (k,)."""
-    residual: Array
-    """Measured less fitted forces [force], shape (k,)."""
-    noise: float
-    """Standard deviation of the forces, by the residuals [force]."""
-    misfit: float
-    """Probability that residuals of the right model are as far from noise as these [1]."""
-    dissipated_energy_error: float
-    """Standard deviation of `dissipated_energy`, by those of the parameters [force length]."""
-    error_estimate: float
-    """Bound on the numerical error of the parameters, over their sizes [1]."""
-    notices: tuple[Notice, ...]
-    """Warnings about the residuals and the parameters."""
-    quantities: ClassVar[tuple[str, ...]] = (
-        *("fit", "g_star", "friction_coefficient", "force_offset", "rig_compliance"),
-        *("standard_errors", "correlation", "noise", "misfit"),
-        *("dissipated_energy", "dissipated_energy_error"),
-        *("tangential_displacement", "tangential_force", "residual"),
-    )
-    method: ClassVar[str] = "least_squares"
-
-    @property
-    def solved(self) -> TangentialContact:
-        """Contact on which the validity depends."""
-        return self.turning
-
-    @property
-    def normal(self) -> NormalContact:
-        """Contact under the normal load."""
-        return self.turning.normal
-
-    @property
-    def g_star(self) -> float:
-        """Effective shear modulus G* [pressure]."""
-        return float(self.turning.g_star)
-
-    @property
-    def friction_coefficient(self) -> float:
-        """mu [1]."""
-        return float(self.turning.friction_coefficient)
-
-    @property
-    def dissipated_energy(self) -> float:
-        """Energy of a cycle, four times that dissipated on first loading [force length]."""
-        return 4 * float(self.turning.dissipated_energy)
-
-    @property
-    def warnings_without_bodies(self) -> tuple[Notice, ...]:
-        """Warnings that do not depend on the bodies."""
-        return *self.turning.warnings_without_bodies, *self.notices
-
-
 def solve(
     contact: NormalContact,
     *,
     tangential_displacement: ArrayLike,
     tangential_force: ArrayLike,
+    fit: Sequence[str] | None = None,
+    g_star: float | None = None,
+    friction_coefficient: float | None = None,
     rig_compliance: float | None = None,
 ) -> LoopFit:
     """Fit G* and mu to a steady loop, or several, of the tangential force over the displacement.
@@ -139,6 +76,10 @@ def solve(
     tangential_displacement : in the order of the measurement, exact beside the forces [length],
         shape (k,).
     tangential_force : measured forces [force], shape (k,).
+    fit : parameters to fit, of `PARAMETERS`; by default the first four, less those that are given.
+        Unless fitted, the force offset is 0, and the displacement offset the middle between the
+        largest and the least displacement, which the turning points may exceed between samples.
+    g_star, friction_coefficient : G* [pressure] and mu [1], if they are not fitted.
     rig_compliance : C of the rig in series, 0 of displacements measured at the contact; fitted if
         it is not given, which needs a loop with full slip, or almost [length/force].
 
@@ -167,82 +108,100 @@ def solve(
     require_type("contact", contact, NormalContact, "a contact from normal.solve")
     if np.ndim(contact.normal_force) or not contact.normal_force > 0:
         raise InputError(("contact",), "must be under a single normal load")
-    if rig_compliance is not None:
-        rig_compliance = single(("rig_compliance",), rig_compliance)
-        require_not_negative(("rig_compliance",), np.asarray(rig_compliance))
-    names = ("g_star", "friction_coefficient", "force_offset", "rig_compliance")
-    fit = names[: 4 if rig_compliance is None else 3]
+    given = g_star, friction_coefficient, None, rig_compliance, None
+    known = dict(zip(PARAMETERS, given, strict=True))
+    fit = [name for name in PARAMETERS[:4] if known[name] is None] if fit is None else fit
+    if not fit or len({*fit} & {*PARAMETERS}) < len(fit):
+        raise InputError(("fit",), f"must hold some of {', '.join(PARAMETERS)}, each once")
+    for name in ("g_star", "friction_coefficient", "rig_compliance"):
+        if (name in fit) != (known[name] is None):
+            detail = "is fitted: leave it out" if name in fit else "is needed unless it is fitted"
+            raise InputError((name,), detail)
+        if name not in fit:
+            value = single((name,), known[name] or 0.0)
+            is_rig = name == "rig_compliance"
+            (require_not_negative if is_rig else require_positive)((name,), np.asarray(value))
     lists = {"tangential_displacement": tangential_displacement}
     curve = as_curve("displacements", **lists, tangential_force=tangential_force)
     if curve[0].size < _FEWEST * len(fit) or np.ptp(curve[0]) == 0:
         detail = f"must hold {_FEWEST * len(fit)} points of a loop"
         raise InputError(("tangential_displacement",), detail)
-    return _Loop(contact, *curve, fit, rig_compliance).result()
+    return _Loop(contact, *curve, fit, known).result()
 
 
 class _Loop:
     """Measured loop, and the model that is fitted to it."""
 
     def __init__(
-        self, contact: NormalContact, u: Array, force: Array, fit: Sequence[str], rig: float | None
+        self,
+        contact: NormalContact,
+        u: Array,
+        force: Array,
+        fit: Sequence[str],
+        known: Mapping[str, float | None],
     ) -> None:
         self.contact, self.displacement, self.force = contact, u, force
-        self.fit, self.rig_compliance = tuple(fit), rig
-        # Units, directions, and the places on first loading that stand for the points and the end.
+        self.fit, self.known = tuple(fit), known
+        self.free = [PARAMETERS.index(name) for name in fit]
         self.amplitude, self.size = float(np.ptp(u)) / 2, float(np.ptp(force)) or 1.0
-        self.sign = residuals.directions(u)
-        halves = (self.amplitude + self.sign * (u - (u.max() + u.min()) / 2)) / 2
-        self.places = np.append(np.maximum(halves, 0.0), self.amplitude)
+        self.middle, self.sign = (u.max() + u.min()) / 2, residuals.directions(u)
+        self.units = np.array(
+            [1.0, 1.0, self.size, self.amplitude / self.size, self.amplitude], dtype=float
+        )
+        """Units of log G*, log mu, F_0, C and U_0 less the middle of the displacements."""
+
+    def places(self, x: Array) -> Array:
+        """Return displacements on first loading that stand for the points, and the amplitude."""
+        from_middle = self.displacement - self.middle - self.amplitude * x[4]
+        halves = (self.amplitude + self.sign * from_middle) / 2
+        return np.append(np.maximum(halves, 0.0), self.amplitude)
 
     def branches(self, first: Array) -> Array:
         """Return the forces of the loop for those on first loading, by Masing's rule."""
         return np.asarray(self.sign * (2 * first[:-1] - first[-1]))
 
-    def compliance(self, x: Array) -> float:
-        """Return C [length/force]."""
-        if self.rig_compliance is not None:
-            return self.rig_compliance
-        return float(x[3]) * self.amplitude / self.size
-
     def first_loading(self, x: Array) -> TangentialContact:
-        """Return the contact at the displacements u + C F(u) = `places`.
+        """Return the contact at the displacements u + C F(u) = `places`, for all parameters.
 
         F is concave, so that Newton's method rises to the root from below, u = U/(1 + 2 G* a C).
         """
-        (g_star, friction), rig = np.exp(x[:2]).tolist(), self.compliance(x)
-        u = self.places / (1 + rig * 2 * g_star * float(self.contact.contact_radius))
+        (g_star, friction), rig = np.exp(x[:2]).tolist(), float(x[3] * self.units[3])
+        places = self.places(x)
+        u = places / (1 + rig * 2 * g_star * float(self.contact.contact_radius))
         for _ in range(_STEPS):
             law = tangential.solve(self.contact, g_star, friction, tangential_displacement=u)
             if not rig:
                 break
-            left = self.places - u - rig * law.tangential_force
+            left = places - u - rig * law.tangential_force
             step = left / (1 + rig * law.tangential_stiffness)
-            if np.all(np.abs(step) <= _CONVERGED * self.places):
+            if np.all(np.abs(step) <= _CONVERGED * places):
                 break
             u = u + step
         return law
 
     def forces(self, x: Array) -> Array:
-        """Return the forces over `size` for log G*, log mu, F_0/`size` and C `size`/A."""
+        """Return the forces over `size` for all parameters, in `units`."""
         return self.branches(self.first_loading(x).tangential_force) / self.size + x[2]
 
     def slopes(self, x: Array) -> Array:
         """Return the slopes of `forces`, at given displacements of contact and rig together."""
         law = self.first_loading(x)
         force, stiffness = law.tangential_force, law.tangential_stiffness
-        yielding = 1 / (1 + self.compliance(x) * stiffness)
+        yielding = 1 / (1 + x[3] * self.units[3] * stiffness)
         # F/(mu E*) depends on G* u/(mu E*) alone, and dF/du = 2 G* c.
         of_g_star = stiffness * law.tangential_displacement
-        of_rig = -force * stiffness * self.amplitude / self.size
+        of_rig = -force * stiffness * self.units[3]
         firsts = (of_g_star, force - of_g_star, of_rig)
         columns = [self.branches(each * yielding) / self.size for each in firsts]
         columns.insert(2, np.ones_like(self.force))
-        return np.column_stack(columns[: len(self.fit)])
+        # A point moves by half of U_0 on first loading, and its force counts twice.
+        columns.append(-(stiffness * yielding)[:-1] * self.amplitude / self.size)
+        return np.column_stack(columns)[:, self.free]
 
     def energy_slopes(self, x: Array) -> Array:
         """Return the slopes of the energy of a cycle, by central differences."""
         slopes = []
-        for step in _STEP * np.eye(x.size):
+        for step in _STEP * np.eye(x.size)[self.free]:
             above, below = (self.first_loading(end) for end in (x + step, x - step))
             change = above.dissipated_energy[-1] - below.dissipated_energy[-1]
             slopes.append(4 * change / (2 * _STEP))
@@ -260,12 +219,12 @@ class _Loop:
         reached = law.tangential_force / pressed.normal_force
         some = slice(None, None, max(1, self.force.size // _POINTS))
         measured, ones = self.force[some] / self.size, np.ones_like(self.force[some])
-        best, found = inf, None
-        known = self.rig_compliance
+        best, found, on_first = inf, None, self.places(np.zeros(5)) / self.amplitude
+        known = self.known["rig_compliance"]
         for in_rig in _IN_RIG[: 1 if known == 0 else None].tolist():
             places = (1 - in_rig) * part + in_rig * reached
             for ratio in _TRIED.tolist():
-                first = np.interp(self.places * (ratio / self.amplitude), places, reached)
+                first = np.interp(on_first * ratio, places, reached)
                 columns = np.column_stack([self.branches(first)[some], ones])
                 (limit, offset), *_ = np.linalg.lstsq(columns, measured)
                 whole = self.amplitude / ratio
@@ -278,77 +237,78 @@ class _Loop:
                     friction = limit * self.size / float(pressed.normal_force)
                     g_star = friction * float(pressed.e_star) * depth / ((1 - in_rig) * whole)
                     rig = in_rig / ratio / limit
-                    best, found = left, [np.log(g_star), np.log(friction), offset, rig]
+                    best, found = left, [np.log(g_star), np.log(friction), offset, rig, 0.0]
         if found is None:
             raise InputError(("tangential_force",), "must rise with the displacement")
-        return np.array(found[: len(self.fit)])
+        values = np.array([self.known[name] for name in PARAMETERS], dtype=float) / self.units
+        given = [*np.log(values[:2]), 0.0, values[3], 0.0]
+        return np.where(np.isin(range(5), self.free), found, given)
 
     def result(self) -> LoopFit:
         """Return the fit, or an InputError."""
         start, measured = self.start(), self.force / self.size
-        low, high = np.full((2, start.size), inf) * [[-1], [1]]
-        low[:2], high[:2], low[3:] = start[:2] - _RANGE, start[:2] + _RANGE, 0.0
+        bounds = np.full((2, start.size), inf) * [[-1], [1]]
+        bounds[:, :2], bounds[0, 3] = np.add.outer([-_RANGE, _RANGE], start[:2]), 0.0
+        bounds[:, 4] = -1.0, 1.0
 
-        def left(x: Array) -> Array:
-            return self.forces(x) - measured
+        def whole(free: Array) -> Array:
+            values = start.copy()
+            values[self.free] = free
+            return values
 
-        tight: dict[str, Any] = {"x_scale": "jac", "ftol": EPS, "xtol": EPS, "gtol": None}
-        x = least_squares(left, start, self.slopes, (low, high), **tight).x
-        slopes, residual = self.slopes(x), -left(x)
-        scale = np.linalg.norm(slopes, axis=0)
-        scatter = float(np.sqrt(residual @ residual / (residual.size - start.size)))
-        if not scale.all():
-            raise self.refused()
-        directions, values, effects = np.linalg.svd(slopes / scale, full_matrices=False)
-        if values[-1] < _SAME:
-            raise self.refused()
-        inverse = effects.T / values
-        deviations = np.linalg.norm(inverse, axis=1)
-        # The model is exact to rounding.
-        errors = max(scatter, EPS) * deviations / scale
-        # The step of Gauss and Newton to the minimum; the search ends where squares no longer fall.
-        step = np.abs(inverse @ (directions.T @ residual)).max()
-        unfinished = 2 * float(step / np.linalg.norm(measured))
-        if _HALF * errors[:2].max() > _WIDEST:
-            raise self.refused()
-        code, misfit = residuals.worst(
-            residuals.misfit(self.displacement, slopes, residual, measured, in_time=True)
+        found = minimum(
+            lambda free: self.forces(whole(free)) - measured,
+            start[self.free],
+            lambda free: self.slopes(whole(free)),
+            bounds[:, self.free],
         )
-        found: list[Notice] = []
-        if misfit < FALSE_ALARM:
-            code = _CODES.get(code, code)
-            message = (
-                f"the residuals are not noise (probability {misfit:.1g}): {_CAUSES[code]}, and the "
-                "standard errors do not hold"
-            )
-            found.append(Notice(code, message, misfit, FALSE_ALARM))
-        units = [*np.exp(x[:2]), self.size, self.amplitude / self.size][: start.size]
-        if start.size > 3 and x[3] < _NO_WORSE * errors[3]:
-            message = "no compliance of the rig is seen: rig_compliance is at its bound 0"
-            found.append(Notice("bound", message, float(x[3] * units[3]), None))
+        x = whole(found)
+        residual = measured - self.forces(x)
+        scatter = float(np.sqrt(residual @ residual / (residual.size - len(self.fit))))
+        try:
+            precision = Precision.of(self.slopes(x), self.fit, "tangential_displacement")
+        except InputError:
+            raise self.refused() from None
+        # The model is exact to rounding.
+        errors = max(scatter, EPS) * precision.deviations
+        if _HALF * errors[np.less(self.free, 2)].max(initial=0.0) > _WIDEST:
+            raise self.refused()
+        tests = residuals.misfit(self.displacement, precision.q, residual, measured, in_time=True)
+        code, misfit = residuals.worst(tests)
+        code = _CODES.get(code, code)
+        notices = [*residuals.doubts(code, misfit, _CAUSES[code])]
+        units = self.units * [*np.exp(x[:2]), 1.0, 1.0, 1.0]
+        values = x * self.units
+        if "rig_compliance" in self.fit:
+            error = errors[self.fit.index("rig_compliance")]
+            if x[3] < _NO_WORSE * error:
+                message = "no compliance of the rig is seen: rig_compliance is at its bound 0"
+                notices.append(Notice("bound", message, float(values[3]), None))
         law = self.first_loading(x)
         most = float(law.tangential_displacement[-1])
         moduli = np.exp(x[:2]).tolist()
+        slopes = self.energy_slopes(x) / precision.scale
         return LoopFit(
-            self.fit,
-            tangential.solve(self.contact, *moduli, tangential_displacement=most),
-            float(x[2]) * self.size,
-            self.compliance(x),
-            errors * units,
-            inverse @ inverse.T / np.multiply.outer(deviations, deviations),
-            self.displacement,
-            self.force - residual * self.size,
-            residual * self.size,
-            scatter * self.size,
-            misfit,
-            scatter * float(np.linalg.norm(self.energy_slopes(x) / scale @ inverse)),
-            float(law.error_estimate / values[-1]) + unfinished,
-            tuple(found),
+            fit=self.fit,
+            turning=tangential.solve(self.contact, *moduli, tangential_displacement=most),
+            force_offset=float(values[2]),
+            rig_compliance=float(values[3]),
+            displacement_offset=float(self.middle + values[4]),
+            standard_errors=errors * units[self.free],
+            correlation=precision.correlation,
+            tangential_displacement=self.displacement,
+            tangential_force=self.force - residual * self.size,
+            residual=residual * self.size,
+            noise=scatter * self.size,
+            misfit=misfit,
+            dissipated_energy_error=scatter * float(np.linalg.norm(slopes @ precision.inverse)),
+            error_estimate=precision.error(float(law.error_estimate), residual, measured),
+            notices=tuple(notices),
         )
 
     def refused(self) -> InputError:
         """Return the error of a loop that leaves parameters open."""
-        if self.rig_compliance is None:
+        if "rig_compliance" in self.fit:
             detail = "give rig_compliance or slide through"
             told = "partial slip cannot tell the contact from the rig"
             return InputError(("rig_compliance",), f"{told}: {detail}")

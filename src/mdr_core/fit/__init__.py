@@ -1,0 +1,7 @@
+"""Modulus, contact point, offset and adhesion from a measured curve of force over depth."""
+
+from mdr_core.fit.model import PARAMETERS
+from mdr_core.fit.result import Fit
+from mdr_core.fit.solver import SEGMENTS, solve
+
+__all__ = ["PARAMETERS", "SEGMENTS", "Fit", "solve"]

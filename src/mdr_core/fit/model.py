@@ -1,0 +1,225 @@
+"""Model of a measured curve, F = E* F^(d - d_0; w/E*) + F_0, and its least squares.
+
+The best of many d_0 and w/E* is refined with exact slopes, because the sum of squares may have
+several minima. With adhesion F^ is the force of the outermost stable state, as on unloading, and
+zero after the pull-off.
+
+Source: notes, §15.
+"""
+
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import inf, pi, sqrt
+from typing import Final
+
+import numpy as np
+
+from mdr_core import adhesion, normal
+from mdr_core.errors import InputError
+from mdr_core.estimation import minimum
+from mdr_core.layer import DepthCurve
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array, Flags
+
+PARAMETERS: Final = ("e_star", "contact_point", "force_offset", "work_of_adhesion")
+"""Quantities that can be fitted."""
+# Points of the curve at which contact points are tried first, about; of these contact points some
+# lie within the curve, and others before it, so many a decade, from a part of its length to a
+# multiple of it, without adhesion and with. The upper part of a curve starts far from its contact.
+_POINTS, _WITHIN, _BEFORE = 100, 50, 20
+_NEAREST, _FARTHEST, _FARTHEST_ADHESIVE = 1e-3, 1e4, 1.0
+# Retractions that are tried first, at the contact radius of the whole range of depths and over it.
+_RETRACTIONS: Final = np.logspace(-3, 0.5, 15)
+# Least c = (2 pi w/E*)^(1/2) over the root of the range of depths, at which the contact is that
+# without adhesion to rounding, and has its slope in w.
+_LEAST_C: Final = 1e-6
+
+Parameters = dict[str, float]
+"""Values of `PARAMETERS` by name."""
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """Curve, and the model that is fitted to it."""
+
+    profile: Profile
+    depth: Array
+    force: Array
+    fit: tuple[str, ...]
+    e_star: float | None
+    touches: Flags
+    """Points that are not after a pull-off."""
+    on_layer: DepthCurve | None
+    """Force over depth on a layer, None on a half-space."""
+    noise: float | None
+    """Known standard deviation of the forces [force]."""
+    body_thickness: float | None
+
+    @property
+    def free(self) -> int:
+        """Degrees of freedom of the residuals."""
+        return self.depth.size - len(self.fit)
+
+    @property
+    def deepest(self) -> float:
+        """Largest depth on the profile, or of the curve on a layer [length]."""
+        if self.on_layer is not None:
+            return self.on_layer.deepest
+        return float((self.profile.largest_loads or (inf,))[0])
+
+    @property
+    def reach(self) -> float:
+        """Distance of the first contact point from the curve, over the length of the curve [1]."""
+        return _FARTHEST_ADHESIVE if "work_of_adhesion" in self.fit else _FARTHEST
+
+    @property
+    def farthest(self) -> float:
+        """First contact point that is tried [length]; the curve has to stay on the profile."""
+        before = float(self.depth.min()) - self.reach * float(np.ptp(self.depth))
+        return max(before, float(self.depth.max()) - self.deepest)
+
+    @property
+    def least_ratio(self) -> float:
+        """Least w/E* that is fitted [length]."""
+        return _LEAST_C**2 * float(np.ptp(self.depth)) / (2 * pi)
+
+    def require_points(self, touching: int) -> None:
+        """Raise InputError unless more points are in contact than parameters are fitted."""
+        if touching <= len(self.fit):
+            ends = (self.profile.largest_loads or (inf,))[0]
+            remedy = "measure deeper, or more points"
+            if ends < np.ptp(self.depth):
+                remedy = f"the profile ends at the depth {ends:.3g}: give a longer one"
+            detail = f"too few points are in contact, {touching}: {remedy}"
+            raise InputError(("indentation_depth",), detail)
+
+    def reduced(self, pressed: Array, ratio: float) -> tuple[Array, Array, Array]:
+        """Return forces over E*, and their slopes in the depth and in w/E*.
+
+        With adhesion the force at less depth than that of the least force is the least.
+
+        Parameters: the depths from first contact, and w/E* [length].
+        """
+        if ratio:
+            return self._adhesive(pressed, ratio)
+        depth = np.maximum(pressed, 0.0)
+        if self.on_layer is not None:
+            force, slope = self.on_layer(depth)
+        else:
+            contact = normal.solve(self.profile, 1.0, indentation_depth=depth)
+            force, slope = contact.normal_force, contact.normal_stiffness
+        force, slope = np.where(pressed > 0, [force, slope], 0.0)
+        return force, slope, np.zeros_like(slope)
+
+    def _adhesive(self, pressed: Array, ratio: float) -> tuple[Array, Array, Array]:
+        force, by_depth, by_ratio = np.zeros((3, *pressed.shape))
+        c, at = sqrt(2 * pi * ratio), np.broadcast_to(self.touches, pressed.shape)
+        # A contact that would spread beyond the profile fits nothing.
+        with suppress(InputError):
+            curve = adhesion.Curve(self.profile, c)
+            ends = np.array([curve.at_pull_off, curve.stable["indentation_depth"][1][-1]])
+            held = np.clip(pressed[at], *curve.load("indentation_depth", ends))
+            edge, _ = curve.outermost("indentation_depth", held)
+            a = self.profile.contact_radius(edge)
+            # dF/dd = 2 E* (a - steep), and dF/dc = -2 E* a^(1/2) steep at the same depth.
+            steep = a / curve.excess(0.5, edge)
+            force[at] = curve.load("normal_force", edge)
+            by_depth[at], by_ratio[at] = 2 * (a - steep), -2 * np.sqrt(a) * steep * pi / c
+        return force, by_depth, by_ratio
+
+    def at(self, parameters: Parameters) -> tuple[Array, Array]:
+        """Return the forces of the model, and their slopes in the fitted parameters."""
+        e_star, d0, offset, work = (parameters[name] for name in PARAMETERS)
+        ratio = work / e_star
+        forces, by_depth, by_ratio = self.reduced(self.depth - d0, ratio)
+        columns = {
+            # At constant w.
+            "e_star": forces - ratio * by_ratio,
+            "contact_point": -e_star * by_depth,
+            "force_offset": np.ones_like(forces),
+            "work_of_adhesion": by_ratio,
+        }
+        slopes = np.reshape([columns[name] for name in self.fit], (len(self.fit), forces.size)).T
+        return e_star * forces + offset, slopes
+
+    def squares(self, parameters: Parameters) -> float:
+        """Return the sum of squares of the residuals."""
+        return float(np.sum(np.square(self.at(parameters)[0] - self.force)))
+
+    def linear(self, reduced: Array) -> tuple[float, float, float]:
+        """Return the least squares, modulus and offset for forces over E*."""
+        top = float(np.abs(reduced).max()) or 1.0
+        columns = np.column_stack([reduced / top, np.ones_like(reduced)])
+        values = np.array([(self.e_star or 0.0) * top, 0.0])
+        free = ["e_star" in self.fit, "force_offset" in self.fit]
+        values[free], *_ = np.linalg.lstsq(columns[:, free], self.force - columns @ values)
+        left = self.force - columns @ values
+        return float(left @ left), float(values[0]) / top, float(values[1])
+
+    def best(self) -> Parameters:
+        """Return the parameters of the least sum of squares, or an InputError."""
+        low, high = float(self.depth.min()), float(self.depth.max())
+        tried, ratios, limit = np.zeros(1), np.zeros(1), self.farthest
+        if "contact_point" in self.fit:
+            count = int(_BEFORE * np.log10(self.reach / _NEAREST))
+            before = (high - low) * np.geomspace(self.reach, _NEAREST, count)
+            tried = np.append(low - before, np.linspace(low, high, _WITHIN, endpoint=False))
+            tried = np.append(limit, tried[tried > limit])
+        if "work_of_adhesion" in self.fit:
+            most = min(high - low, self.deepest)
+            reached = normal.solve(self.profile, 1.0, indentation_depth=most)
+            ratios = (_RETRACTIONS * (high - low)) ** 2 / (2 * pi * reached.contact_radius)
+        some = np.argsort(self.depth)[:: max(1, self.depth.size // _POINTS)]
+        used = {name: getattr(self, name)[some] for name in ("depth", "force", "touches")}
+        coarse = replace(self, **used)
+        starts: list[tuple[float, Parameters]] = []
+        for ratio in ratios.tolist():
+            forces, *_ = coarse.reduced(coarse.depth - tried[:, None], ratio)
+            for point, reduced in zip(tried.tolist(), forces, strict=True):
+                squares, modulus, offset = coarse.linear(reduced)
+                values = modulus, point, offset, ratio * modulus
+                starts.append((squares, dict(zip(PARAMETERS, values, strict=True))))
+        _, start = min(starts, key=lambda each: each[0])
+        if start["e_star"] <= 0:
+            detail = "does not rise as on this profile: compression is positive, reverse its sign"
+            raise InputError(("normal_force",), detail)
+        return self._refined(start, limit, high) if self.fit else start
+
+    @np.errstate(all="ignore")
+    def _refined(self, start: Parameters, low: float, high: float) -> Parameters:
+        """Return the parameters of the nearest minimum.
+
+        Parameters
+        ----------
+        start : parameters from which the search starts.
+        low, high : limits of the contact point [length].
+        """
+        size = float(np.abs(self.force).max()) or 1.0
+        units = start | {"contact_point": float(np.ptp(self.depth)), "force_offset": size}
+        unit = np.array([units[name] for name in self.fit])
+        ends = {"contact_point": (low, high), "force_offset": (-inf, inf)}
+        ends["work_of_adhesion"] = self.least_ratio * start["e_star"], inf
+        bounds = np.transpose([ends.get(name, (0.0, inf)) for name in self.fit]) / unit
+        first = np.array([start[name] for name in self.fit]) / unit
+
+        def values(x: Array) -> Parameters:
+            return start | dict(zip(self.fit, (x * unit).tolist(), strict=True))
+
+        # Residuals and slopes are asked for in turn at one place.
+        @lru_cache(maxsize=1)
+        def evaluated(place: bytes) -> tuple[Array, Array]:
+            forces, slopes = self.at(values(np.frombuffer(place)))
+            return (forces - self.force) / size, slopes * unit / size
+
+        with suppress(ValueError, np.linalg.LinAlgError):
+            found = minimum(
+                lambda x: evaluated(x.tobytes())[0],
+                first,
+                lambda x: evaluated(x.tobytes())[1],
+                bounds,
+            )
+            if np.isfinite(found).all():
+                return values(found)
+        detail = "does not determine the parameters: measure deeper, or fit fewer of them"
+        raise InputError(("indentation_depth",), detail)

@@ -1,0 +1,199 @@
+"""Parameters that fit a curve, and warnings of what their standard errors leave out.
+
+Source: notes, §15.
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar, Final
+
+import numpy as np
+from scipy.special import chdtrc, stdtrit
+
+from mdr_core import adhesion, normal, residuals
+from mdr_core import layer as layers
+from mdr_core.doubles import EPS
+from mdr_core.errors import InputError, Notice
+from mdr_core.estimation import Estimate, Precision
+from mdr_core.fit.model import PARAMETERS, Model, Parameters
+from mdr_core.materials import Material
+from mdr_core.normal import NormalContact
+from mdr_core.residuals import ROUNDING
+from mdr_core.typing import Array
+
+# Either half of an interval over that by the standard error, or the inverse, if it is lopsided.
+_LOPSIDED: Final = 1.5
+# Growth of a standard error without a single point: at most 1.9 in curves of six points whose
+# noise is white, and 4.6 (median) where one point is taken for the pull-off.
+_ONE_POINT: Final = 2.5
+_REMEDIES: Final = {
+    "misfit": "the shape, the range of the fit or the model is wrong",
+    "two_branches": "loading and unloading differ: give the segment to fit",
+    "noise_grows": "two branches sorted by depth, or noise that grows with the force: keep the "
+    "order of time, and give the segment",
+    "correlated_noise": "neighbouring errors are alike: filtered, drifting or of a wrong shape",
+}
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Fit(Estimate):
+    """Fitted parameters with their standard errors."""
+
+    normal: NormalContact
+    """Fitted contact at the largest depth."""
+    indentation_depth: Array
+    """Measured depths, in the coordinate of the curve [length], shape (k,).
+
+    With adhesion those that are fitted, in ascending order.
+    """
+    normal_force: Array
+    """Fitted forces at these depths [force], shape (k,)."""
+    contact_point: float
+    """Depth d_0 of first contact in the coordinate of the curve [length]."""
+    force_offset: float
+    """Force F_0 without contact [force]."""
+    work_of_adhesion: float
+    """Work of adhesion w [force/length], 0 if it is not fitted."""
+    youngs_modulus: float | None = None
+    """E of the sample [pressure], None without its Poisson's ratio."""
+    youngs_modulus_error: float | None = None
+    """Standard deviation of E by that of E* [pressure]."""
+    quantities: ClassVar[tuple[str, ...]] = (
+        *("fit", "e_star", "contact_point", "force_offset", "work_of_adhesion"),
+        *("standard_errors", "correlation", "noise", "misfit"),
+        *("youngs_modulus", "youngs_modulus_error"),
+        *("indentation_depth", "normal_force", "residual"),
+    )
+    g_star: ClassVar[None] = None
+
+    @property
+    def e_star(self) -> float:
+        """Effective modulus E* [pressure]."""
+        return float(self.normal.e_star)
+
+    @property
+    def warnings_without_bodies(self) -> tuple[Notice, ...]:
+        """Warnings that do not depend on the bodies."""
+        return *self.normal.warnings_without_bodies, *self.notices
+
+
+def result(model: Model, found: Parameters) -> Fit:
+    """Return the fit with the best parameters, or an InputError."""
+    forces, slopes = model.at(found)
+    model.require_points(int(np.sum(forces != found["force_offset"])))
+    residual = model.force - forces
+    # The model is exact to rounding.
+    scatter = max(
+        float(np.sqrt(np.sum(np.square(residual)) / model.free)), EPS * float(np.abs(forces).max())
+    )
+    precision = Precision.of(slopes, model.fit, "indentation_depth")
+    contact = _deepest(model, found)
+    interpolated = 0.0 if model.on_layer is None else model.on_layer.error
+    code, misfit = _misfit(model, precision.q, residual)
+    return Fit(
+        fit=model.fit,
+        normal=contact,
+        indentation_depth=model.depth,
+        normal_force=forces,
+        contact_point=found["contact_point"],
+        force_offset=found["force_offset"],
+        work_of_adhesion=found["work_of_adhesion"],
+        standard_errors=(model.noise or scatter) * precision.deviations,
+        correlation=precision.correlation,
+        residual=residual,
+        noise=model.noise or scatter,
+        misfit=misfit,
+        error_estimate=precision.error(contact.error_estimate + interpolated, residual, forces),
+        notices=(
+            *_doubts(model, code, misfit),
+            *_open(model, found, scatter, precision),
+            *_decided_by_one(model, precision),
+        ),
+    )
+
+
+def _deepest(model: Model, found: Parameters) -> NormalContact:
+    """Return the contact at the largest depth of the curve."""
+    layer = None if model.on_layer is None else model.on_layer.layer
+    material = Material(found["e_star"], body_thickness=model.body_thickness, layer=layer)
+    depth = max(float(model.depth.max()) - found["contact_point"], 0.0)
+    if work := found["work_of_adhesion"]:
+        return adhesion.solve(model.profile, material, work, indentation_depth=depth)
+    solve = normal.solve if layer is None else layers.solve
+    return solve(model.profile, material, indentation_depth=depth)
+
+
+def _misfit(model: Model, q: Array, residual: Array) -> tuple[str, float]:
+    """Return the likeliest fault of the residuals, and the probability of such by chance.
+
+    With a known noise the sum of squares is compared with the distribution of chi^2 as well.
+    """
+    found = residuals.misfit(model.depth, q, residual, model.force)
+    if model.noise is not None:
+        squares = float(np.sum(np.square(residual / model.noise)))
+        by_size = 2 * float(chdtrc(model.free, squares))
+        found["misfit"] = min(found.get("misfit", 1.0), by_size)
+    return residuals.worst(found)
+
+
+def _doubts(model: Model, code: str, misfit: float) -> tuple[Notice, ...]:
+    """Return the warning about the residuals, if there is one."""
+    left = " and ".join(name for name in PARAMETERS[2:] if name not in model.fit)
+    remedy = f"; fit {left} too, if the curve has them" if left and code == "misfit" else ""
+    return residuals.doubts(code, misfit, _REMEDIES[code], remedy)
+
+
+def _open(
+    model: Model, found: Parameters, scatter: float, precision: Precision
+) -> tuple[Notice, ...]:
+    """Return the warning that the interval of the contact point is not that of its error.
+
+    At its ends the least squares for a given contact point exceed the minimum by the quantile of
+    the F-distribution. Raises InputError if it has no end.
+    """
+    is_exact = scatter <= ROUNDING * float(np.abs(model.force).max())
+    if "contact_point" not in model.fit or "work_of_adhesion" in model.fit or is_exact:
+        return ()
+    point, free = found["contact_point"], model.free
+    quantile = float(stdtrit(free, 0.975))
+    half = quantile * scatter * float(precision.deviations[model.fit.index("contact_point")])
+    least = free * scatter**2 * (1 + quantile**2 / free)
+
+    def within(place: float) -> bool:
+        reduced, *_ = model.reduced(model.depth - place, 0.0)
+        return model.linear(reduced)[0] <= least
+
+    if within(model.farthest):
+        detail = (
+            "does not determine contact_point: start the curve nearer to it, fit fewer "
+            "parameters, or give a longer profile"
+        )
+        raise InputError(("indentation_depth",), detail)
+    ends = [point + sign * half * _LOPSIDED for sign in (-1, 1)]
+    nearer = [point + sign * half / _LOPSIDED for sign in (-1, 1)]
+    if all(map(within, nearer)) and not any(within(max(end, model.farthest)) for end in ends):
+        return ()
+    message = (
+        "the curve hardly determines contact_point: its interval is lopsided, and those of the "
+        "other parameters too; start nearer to the contact point, or fit fewer parameters"
+    )
+    return (Notice("undetermined", message),)
+
+
+def _decided_by_one(model: Model, precision: Precision) -> tuple[Notice, ...]:
+    """Return the warning of a point without which a standard error would grow most.
+
+    Without point i the error of parameter j grows by (1 + (C J^T)_ji^2/(C_jj (1 - h_i)))^(1/2).
+    """
+    if not model.fit:
+        return ()
+    rest = np.maximum(1 - np.sum(precision.q**2, axis=1), EPS)
+    growth = np.sqrt(1 + np.square(precision.unit_rows @ precision.q.T) / rest)
+    place, point = np.unravel_index(int(growth.argmax()), growth.shape)
+    largest = float(growth[place, point])
+    if largest <= _ONE_POINT:
+        return ()
+    message = (
+        f"{model.fit[place]} rests on one point, at the depth {model.depth[point]:.6g}: without "
+        f"it the standard error is {largest:.2g} times as large; measure more points there"
+    )
+    return (Notice("one_point", message, largest, _ONE_POINT),)

@@ -1,0 +1,177 @@
+"""Fit of modulus, contact point, offset and adhesion to a measured curve.
+
+Source: notes, §15.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mdr_core import residuals
+from mdr_core.errors import InputError
+from mdr_core.fit import adhesive
+from mdr_core.fit.model import PARAMETERS, Model
+from mdr_core.fit.result import Fit, result
+from mdr_core.layer import DepthCurve
+from mdr_core.materials import RIGID, Body, Layer, from_bodies
+from mdr_core.profiles import Profile
+from mdr_core.typing import Array
+from mdr_core.validation import (
+    as_curve,
+    require_poissons_ratio,
+    require_single_positive,
+    require_type,
+)
+
+SEGMENTS: Final = {"loading": 1, "unloading": -1}
+"""Branches of a curve, and the direction of the depth on each."""
+
+
+def solve(
+    profile: Profile,
+    *,
+    indentation_depth: ArrayLike,
+    normal_force: ArrayLike,
+    fit: Sequence[str] = ("e_star", "contact_point"),
+    e_star: float | None = None,
+    noise: float | None = None,
+    body_thickness: float | None = None,
+    segment: str | None = None,
+    poissons_ratio: float | None = None,
+    indenter: Body | Literal["rigid"] = "rigid",
+    layer: Layer | None = None,
+) -> Fit:
+    """Return the parameters of a contact that fit a measured curve best.
+
+    Source: notes, §15.
+
+    Parameters
+    ----------
+    profile : profile of any kind, with single numbers as parameters.
+    indentation_depth, normal_force : the curve, in any order, with or without the approach before
+        contact [length], [force], shape (k,).
+    fit : parameters to fit, of "e_star", "contact_point", "force_offset" and "work_of_adhesion".
+        All but the modulus are zero if they are not fitted. A curve with adhesion is that of
+        unloading, with or without points after the pull-off. Its points between the least force and
+        the pull-off, states that only a stiff instrument holds, are left out.
+    e_star : effective modulus, needed unless it is fitted [pressure].
+    noise : standard deviation of the forces, by default that of the residuals [force].
+    body_thickness : see `from_bodies` [length].
+    segment : "loading" or "unloading", by the direction of the depth in the order of the curve; by
+        default all points.
+    poissons_ratio : Poisson's ratio of the sample [1], for its Young's modulus
+        E = (1 - nu^2)/(1/E* - 1/E_i*).
+    indenter : the other body, of E_i*.
+    layer : elastic layer that is the sample, with its Poisson's ratio on a bonded base; not with
+        adhesion.
+
+    Returns
+    -------
+    The parameters with standard errors and correlation, and the residuals.
+
+    Raises
+    ------
+    InputError : lists of different lengths, too few points in contact, forces that fall with the
+        depth, depths beyond the end of the profile, parameters that the curve does not determine,
+        or an indenter that is softer than the contact.
+
+    Examples
+    --------
+    >>> from mdr_core.profiles import Paraboloid
+    >>> d = np.linspace(-1e-6, 2e-6, 61)
+    >>> force = normal.solve(Paraboloid(0.01), 2e9, indentation_depth=np.maximum(d - 3e-7, 0.0))
+    >>> found = solve(Paraboloid(0.01), indentation_depth=d, normal_force=force.normal_force)
+    >>> print(f"{found.e_star:.6g} {found.contact_point:.6g}")
+    2e+09 3e-07
+    """
+    require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
+    depth, force = _curve(indentation_depth, normal_force, segment)
+    unknown = [name for name in fit if name not in PARAMETERS]
+    if unknown or not fit or len(set(fit)) < len(fit):
+        raise InputError(("fit",), f"must hold some of {', '.join(PARAMETERS)}, each once")
+    if ("e_star" in fit) == (e_star is not None):
+        reason = (
+            "is fitted: leave it out" if e_star is not None else "is needed unless it is fitted"
+        )
+        raise InputError(("e_star",), reason)
+    for name, value in (("e_star", e_star), ("noise", noise)):
+        if value is not None:
+            require_single_positive((name,), value)
+    if "work_of_adhesion" in fit and profile.is_flat_punch:
+        detail = "holds work_of_adhesion, on which only the pull-off of a flat punch depends"
+        raise InputError(("fit",), detail)
+    deepest = profile.largest_loads
+    if deepest is not None and "contact_point" not in fit and depth.max() > deepest[0]:
+        place = ("indentation_depth", int(depth.argmax()))
+        raise InputError(place, "lies beyond the end of the profile: give a longer one")
+    curve = None if layer is None else _on_layer(profile, layer, depth, fit, body_thickness)
+    touches = np.ones(depth.size, dtype=bool)
+    known = e_star, touches, curve, noise, body_thickness
+    model = Model(profile, depth, force, tuple(fit), *known)
+    is_adhesive = "work_of_adhesion" in fit
+    found = adhesive.solve(model) if is_adhesive else result(model, model.best())
+    return found if poissons_ratio is None else _of_sample(found, poissons_ratio, indenter)
+
+
+def _on_layer(
+    profile: Profile,
+    layer: Layer,
+    depth: Array,
+    fit: Sequence[str],
+    body_thickness: float | None,
+) -> DepthCurve:
+    """Return the force over depth on a layer, or an InputError where it cannot be fitted."""
+    if "work_of_adhesion" in fit:
+        raise InputError(("layer",), "cannot be combined with a fitted work_of_adhesion")
+    if body_thickness is not None:
+        raise InputError(("layer",), "and body_thickness exclude each other: give one of them")
+    return DepthCurve.up_to(profile, layer, max(float(depth.max()), 2 * float(np.ptp(depth))))
+
+
+def _of_sample(found: Fit, ratio: float, indenter: Body | Literal["rigid"]) -> Fit:
+    """Return the fit with Young's modulus of the sample, or an InputError."""
+    require_poissons_ratio(("poissons_ratio",), ratio)
+    other = 0.0 if indenter == RIGID else found.e_star / from_bodies([indenter, RIGID]).e_star
+    if other >= 1:
+        raise InputError(
+            ("indenter",), "is more compliant than the contact: check it and the units"
+        )
+    modulus = (1 - ratio) * (1 + ratio) * found.e_star / (1 - other)
+    error = 0.0
+    if "e_star" in found.fit:
+        error = float(found.standard_errors[found.fit.index("e_star")]) / found.e_star
+    return replace(
+        found, youngs_modulus=modulus, youngs_modulus_error=modulus * error / (1 - other)
+    )
+
+
+def _curve(
+    indentation_depth: ArrayLike, normal_force: ArrayLike, segment: str | None
+) -> tuple[Array, Array]:
+    """Return depths and forces of a branch, or an InputError."""
+    depth, force = as_curve(
+        "depths", indentation_depth=indentation_depth, normal_force=normal_force
+    )
+    if np.ptp(depth) == 0:
+        raise InputError(("indentation_depth",), "must hold different depths")
+    if segment is not None:
+        if segment not in SEGMENTS:
+            raise InputError(("segment",), f"must be one of {', '.join(SEGMENTS)}")
+        used = residuals.directions(depth) == SEGMENTS[segment]
+        if np.sum(used) < 2:
+            raise InputError(("segment",), f"is not in the curve: there is no {segment}")
+        depth, force = depth[used], force[used]
+    # The force falls to a pull-off too, whose least force is farther from most forces than the
+    # largest one.
+    height, order = force - np.median(force), np.argsort(depth, kind="stable")
+    tenth = max(depth.size // 10, 1)
+    falls = height[order[-tenth:]].mean() < height[order[:tenth]].mean()
+    if falls and height.max() > -height.min():
+        detail = (
+            "the largest force lies at a small depth: reverse the sign of a separation or height"
+        )
+        raise InputError(("indentation_depth",), detail)
+    return depth, force
