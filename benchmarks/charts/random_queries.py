@@ -13,9 +13,9 @@ import numpy as np
 from mpmath import mp, mpf
 from tests.core.comparison import profile_from
 from tests.core.random_cases import scene
-from tests.core.test_layer import layer_equation
 from tests.oracles import history_generate, history_reference, slip_reference, wear_reference
 from tests.oracles import subsurface_generate as beneath
+from tests.oracles.layer_reference import DIGITS, LayerContact
 from tests.oracles.shapes import shape_of
 
 from mdr_core import (
@@ -189,21 +189,19 @@ def worn(count: int) -> Iterator[Pair]:
 
 
 def layers(count: int) -> Iterator[Pair]:
-    """Depth and force of layers at the contact radius one, four powers g = x^n on each."""
-    draw, exponents = random.Random(9), (1.0, 2.0, 3.0, 4.0)
-    for _ in range(count // len(exponents)):
-        part, nu = float(10 ** draw.uniform(-2, 0.17)), draw.uniform(0, 0.5)
+    """Depth and force of layers at the contact radius one, under four powers."""
+    draw = random.Random(9)
+    for number in range(count):
+        thickness, nu = float(10 ** draw.uniform(-0.17, 2)), draw.uniform(0, 0.5)
         base = draw.choice(["bonded", "frictionless"])
-        material = Material(E_STAR, layer=Layer(1 / part, base, nu))
-        with mp.workdps(30):
-            shapes = [lambda x, n=n: x ** mpf(n) for n in exponents]
-            truths = layer_equation(shapes, base, mpf(nu), mpf(part))
-            for exponent, unit in zip(exponents, truths, strict=True):
-                power = {"kind": "power", "coefficient": 1.0, "exponent": exponent}
-                depth, force = (shape_of(power).g(mpf(1)) * value for value in unit)
-                found = layer.solve(Power(1.0, exponent), material, contact_radius=1.0)
-                expected = {"indentation_depth": depth, "normal_force": force}
-                yield largest_error(found, expected), found.error_estimate
+        power = {"kind": "power", "coefficient": 1.0, "exponent": 1.0 + number % 4}
+        with mp.workdps(DIGITS):
+            truths = LayerContact(power, thickness, base, nu).solved
+        material = Material(E_STAR, layer=Layer(thickness, base, nu))
+        found = layer.solve(profile_from(power), material, contact_radius=1.0)
+        # E* is one.
+        expected = {name: truths[name] for name in ("indentation_depth", "normal_force")}
+        yield largest_error(found, expected), found.error_estimate
 
 
 def curves(count: int) -> Iterator[Pair]:

@@ -41,7 +41,7 @@ _STANDARD_INPUT: Final = "-"
 _PARAMETERS: Final = PARAMETERS | {"fit": parameters_of(FitQuery)}
 # Options that are not numbers.
 _TEXTS: Final = frozenset(
-    {"kind", "scale", "answers", "quantities", "held_1", "held_2", "fit", "segment"}
+    {"kind", "scale", "answers", "quantities", "held_1", "held_2", "fit", "segment", "layer_base"}
 )
 # Heights between which an area function describes a tip.
 _HEIGHTS: Final = ("largest_height", "lowest_height")

@@ -9,6 +9,7 @@ from mdr_core.typing import Parameter
 from mdr_core.validation import BODIES, require_poissons_ratio, require_positive
 
 RIGID: Final = "rigid"
+Base = Literal["bonded", "frictionless"]
 Held = Literal["contacts", "stem", "free", "block"]
 """How a round body is held: between two contacts, on a stem or by its equator, as a free body whose
 depth counts against its centre, or as a bump of a block."""
@@ -49,7 +50,7 @@ class Layer:
 
     thickness: float
     """h [length]."""
-    base: Literal["bonded", "frictionless"] = "bonded"
+    base: Base = "bonded"
     """`bonded`, or `frictionless`: the layer slides on its base, but does not lift off."""
     poissons_ratio: float | None = None
     """nu of the layer [1], needed on a bonded base; `from_bodies` takes it from the body."""
@@ -58,7 +59,7 @@ class Layer:
 
     def __post_init__(self) -> None:
         place = ("material", "layer")
-        if self.base not in ("bonded", "frictionless"):
+        if self.base not in get_args(Base):
             raise InputError((*place, "base"), 'must be "bonded" or "frictionless"')
         require_positive((*place, "thickness"), self.thickness)
         if self.poissons_ratio is not None:

@@ -71,7 +71,10 @@ _WORDS: Final[Mapping[str, Any]] = {
     "profile.kind": Literal[OF_NUMBERS],
     "fit": str | None,
     "segment": Literal["loading", "unloading"] | None,
+    **dict.fromkeys(("material.layer.base", "layer.base"), materials.Base | None),
 }
+# Groups whose parameters carry their name.
+_LAYERS: Final = frozenset({"material.layer", "layer"})
 _LOADS: Final = frozenset({"load", "tangential", "torsion", "oscillation"})
 _RENAMED: Final = {"cycles.normal.amplitude": "normal_amplitude", "radius": "r"}
 _TEXTS: Final = {
@@ -210,7 +213,7 @@ def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str
         type_ = _TYPES.get(leaf["type"])
         text: str = _TEXTS.get(field) or leaf.get("description", "")
         dimension = text[text.rfind("[") :]
-        name = _RENAMED.get(field, name)
+        name = f"layer_{name}" if group in _LAYERS else _RENAMED.get(field, name)
         if group in {"material.bodies.#", "profile.radii"}:
             yield from _of_both_bodies(field, type_, text)
         elif field in _WORDS:
@@ -223,7 +226,7 @@ def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str
             for end, which in (("from", "First"), ("to", "Last")):
                 meaning = f"{which} of `n` values of `{name}` {dimension}"
                 yield f"{name}_{end}", field, _Number, meaning
-        elif type_ and group in {"", "profile", "material", *loads}:
+        elif type_ and group in {"", "profile", "material", *_LAYERS, *loads}:
             if group == "profile":
                 text = f"`{name}` of the profile, see GET /v1/profiles {dimension}"
             yield name, field, type_, text

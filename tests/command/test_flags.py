@@ -106,6 +106,8 @@ def test_the_suffix_of_the_file_gives_the_format(tmp_path: Path) -> None:
         (["--normal-force", "ten"], "--normal-force"),
         (["--normal-force", "1", "--slope", "1"], "--slope"),
         (["--normal-force", "1", "--normal-force", "2"], "--normal-force"),
+        (["--normal-force", "1", "--layer-thickness", "1"], "--layer-base"),
+        (["--normal-force", "1", "--layer-base", "glued"], "--layer-base"),
         ([], "--indentation-depth"),
     ],
 )

@@ -1,11 +1,11 @@
 """A contact with an elastic layer solves Lebedev and Ufliand's equation, with adhesion and fits."""
 
 from collections.abc import Sequence
+from math import sqrt
 from typing import Any
 
 import numpy as np
 import pytest
-from mpmath import cos, cosh, exp, eye, legendre, lu_solve, matrix, mp, mpf, pi, sinh, sqrt
 from numpy.typing import NDArray
 
 from mdr_core import (
@@ -31,6 +31,8 @@ from mdr_core import (
     normal,
     tangential,
 )
+from tests.core import random_layers
+from tests.oracles.shapes import KINDS
 
 Array = NDArray[np.float64]
 BONDED, SLIDING = "bonded", "frictionless"
@@ -137,82 +139,11 @@ def test_two_equal_bodies_and_units_of_micrometres() -> None:
     assert values == pytest.approx((2.82794292798e-06, 1.90928206748e-08), rel=1e-10, abs=0)
 
 
-def _missing(base: str, nu: Any, w: Any) -> Any:
-    """1 - L(w). Source: hayes."""
-    if base == SLIDING:
-        return (1 + 2 * w - exp(-2 * w)) / (sinh(2 * w) + 2 * w)
-    kappa = 3 - 4 * nu
-    both = 1 + kappa**2 + 4 * w**2
-    return (2 * kappa * exp(-2 * w) + both + 4 * w) / (2 * kappa * cosh(2 * w) + both)
-
-
-def _gauss(count: int) -> tuple[list[Any], list[Any]]:
-    """Gauss's rule on [0, 1] with 30 digits."""
-    nodes, weights = [], []
-    for k in range(count):
-        x = cos(pi * (k + mpf(3) / 4) / (count + mpf(1) / 2))
-        for _ in range(7):
-            value, before = legendre(count, x), legendre(count - 1, x)
-            slope = count * (before - x * value) / (1 - x * x)
-            x -= value / slope
-        nodes.append((1 + x) / 2)
-        weights.append(1 / ((1 - x * x) * slope**2))
-    return nodes, weights
-
-
-def layer_equation(shapes: Sequence[Any], base: str, nu: Any, part: Any) -> list[tuple[Any, Any]]:
-    """Depths and forces for a = E* = 1 with 30 digits, by Gauss's rule for the whole equation."""
-    x, weight = _gauss(22)
-    # Two rules beside each other for the waves.
-    half, share = _gauss(36)
-    w = [*(12 * z for z in half), *(12 + 24 * z for z in half)]
-    strength = [*(12 * each for each in share), *(24 * each for each in share)]
-    strength = [2 / pi * part * s * _missing(base, nu, z) for s, z in zip(strength, w, strict=True)]
-    cosines = matrix([[cos(z * part * place) for z in w] for place in [*x, mpf(1)]])
-    scaled = matrix(
-        [[c * s for c, s in zip(row, strength, strict=True)] for row in cosines.tolist()]
-    )
-    kernel = scaled * cosines.T
-    size = len(x)
-    system = eye(size) - matrix(
-        [[kernel[i, j] * weight[j] for j in range(size)] for i in range(size)]
-    )
-    at_edge = [kernel[size, j] * weight[j] for j in range(size)]
-
-    def solved(g: Any) -> tuple[list[Any], Any]:
-        """The load of the foundation at the nodes, and at the edge."""
-        load = lu_solve(system, matrix([g(z) for z in x]))
-        return load, g(mpf(1)) + sum(a * b for a, b in zip(at_edge, load, strict=True))
-
-    unit, unit_edge = solved(lambda _: mpf(1))
-    found = []
-    for g in shapes:
-        shape, edge = solved(g)
-        depth = edge / unit_edge
-        both = zip(weight, unit, shape, strict=True)
-        found.append((depth, 2 * sum(z * (depth * u - s) for z, u, s in both)))
-    return found
-
-
-def test_random_cases_with_thirty_digits() -> None:
-    rng = np.random.default_rng(54)
-    for _ in range(20):
-        part = float(np.exp(rng.uniform(np.log(0.01), np.log(1.5))))
-        base = str(rng.choice([BONDED, SLIDING]))
-        nu = float(rng.uniform(0, 0.5))
-        exponent = float(rng.choice([1, 2, 3, 4, 6]))
-        with mp.workdps(30):
-            shapes = [lambda x, n=exponent: x ** mpf(n)]
-            depth, force = map(float, layer_equation(shapes, base, mpf(nu), mpf(part))[0])
-        # g = x^n of the profile C r^n.
-        coefficient = float(
-            normal.solve(Power(1.0, exponent), 1.0, contact_radius=1.0).indentation_depth
-        )
-        profile = Power(1 / coefficient, exponent)
-        contact = layer.solve(profile, _material(part, base, nu), contact_radius=1.0)
-        bound = min(contact.error_estimate, 1e-10)
-        assert contact.indentation_depth == pytest.approx(depth, rel=bound, abs=0)
-        assert contact.normal_force == pytest.approx(force, rel=bound, abs=0)
+@pytest.mark.every(8)
+@pytest.mark.parametrize("number", range(2 * len(KINDS)))
+def test_random_cases_with_thirty_digits(number: int) -> None:
+    error, scene = random_layers.worst(54 + number, KINDS[number % len(KINDS)])
+    assert error.error <= min(error.stated, random_layers.BOUND), (error, scene)
 
 
 @pytest.mark.parametrize(

@@ -111,6 +111,7 @@ def slope_integral(
     r: Array,
     *kernels: Kernel,
     width: Array | None = None,
+    degree: float = 0.0,
 ) -> Array:
     """Return int_low^high g'(x) K(x, sqrt(r^2 - x^2)) dx, one row for each kernel K (k, m).
 
@@ -122,6 +123,7 @@ def slope_integral(
     low, high, r : 0 <= low <= high <= r [length], shape (m,).
     kernels : K of each integral.
     width : r - low, where it has more digits than the difference; high = r [length].
+    degree : power of x by which the kernels grow, where it exceeds one.
     """
     total = np.zeros((len(kernels), r.size))
     for branch in smooth_parts(branches, high.max(initial=0.0)):
@@ -139,12 +141,15 @@ def slope_integral(
             if width is not None:
                 own = np.sqrt(width * (2 * low + width))[index]
                 root_low = np.where(start == low[index], own, root_low)
+                from_base = (start == low[index]) & (start == branch.base)
+                s_r = np.where(from_base, own, s_r)
+                s_high = np.where(from_base & (end == far), own, s_high)
             ends = _Ends(s_low, s_high, s_r, root_low, root_high)
-            total[:, index] += _branch(branch, ends, kernels)
+            total[:, index] += _branch(branch, ends, kernels, degree)
     return total
 
 
-def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel]) -> Array:
+def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], degree: float) -> Array:
     """Integrals in tan(alpha/2), s = s_r cos(alpha), above half of s_r, and in log(s) below it."""
     base, (s_low, s_high, s_r, root_low, root_high) = branch.base, ends
     split = np.minimum(np.maximum(s_r / 2, s_low), s_high)
@@ -154,7 +159,7 @@ def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel]) -> Array:
     # The roots distinguish the ends of an interval that is too narrow for s to resolve.
     upper = (split < s_high) | (split <= s_low)
     span = np.where(upper, root_split / (split + s_r) - top, 0.0)
-    growth = branch.steepness + 1
+    growth = branch.steepness + max(degree, 1.0)
 
     def above(y: Array, index: Indices) -> Array:
         # -y = tan(alpha/2), so that the powers rise with y.

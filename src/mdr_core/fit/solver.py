@@ -65,7 +65,7 @@ def solve(
     poissons_ratio : Poisson's ratio of the sample [1], for its Young's modulus
         E = (1 - nu^2)/(1/E* - 1/E_i*).
     indenter : the other body, of E_i*.
-    layer : elastic layer that is the sample, with its Poisson's ratio on a bonded base; not with
+    layer : elastic layer that is the sample, with Poisson's ratio on a bonded base; not with
         adhesion.
 
     Returns
@@ -107,6 +107,8 @@ def solve(
     if deepest is not None and "contact_point" not in fit and depth.max() > deepest[0]:
         place = ("indentation_depth", int(depth.argmax()))
         raise InputError(place, "lies beyond the end of the profile: give a longer one")
+    if layer is not None and layer.poissons_ratio is None:
+        layer = replace(layer, poissons_ratio=poissons_ratio)
     curve = None if layer is None else _on_layer(profile, layer, depth, fit, body_thickness)
     touches = np.ones(depth.size, dtype=bool)
     known = e_star, touches, curve, noise, body_thickness

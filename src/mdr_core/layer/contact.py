@@ -38,7 +38,7 @@ class LayerContact(NormalContact):
     @cached_property
     def half_space(self) -> NormalContact:
         """Contact of a half-space with the same contact coordinate."""
-        known = self.profile, self.e_star, self.coordinate, "contact_radius", self.material
+        known = self.profile, self.e_star, self.coordinate, self.control, self.material
         vars(contact := NormalContact(*known))["contact_radius"] = self.contact_radius
         return contact
 

@@ -121,7 +121,10 @@ def _block(
         energy, slope = depth * force / 2, full(0.0, depth)
     else:
         start = full(1.0, a) * profile.first_radius
-        rates = profile.annulus_integrals(start, a - start, *_odd_polynomials(count + 1)).T
+        # The rule resolves the least number of polynomials in any case.
+        rates = profile.annulus_integrals(
+            start, coordinate, *_odd_polynomials(count + 1), degree=count - _LEAST
+        ).T
         rates = rates / np.arange(1, 2 * count + 2, 2)
         moments = np.concatenate([rates[:, :1], (rates[:, 1:-1] - rates[:, :-2]) / 2], axis=1)
         weights = moments @ to_modes

@@ -385,16 +385,19 @@ class Profile(ABC):
             found[:, own] = branch.weight(x[:, own], s[:, own])
         return found
 
-    def annulus_integrals(self, low: Array, width: Array, *kernels: Kernel) -> Array:
+    def annulus_integrals(
+        self, low: Array, width: Array, *kernels: Kernel, degree: float = 0.0
+    ) -> Array:
         """Integrals int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, shape (k, m).
 
         Parameters
         ----------
         low, width : inner radii and widths of the annuli [length], shape (m,).
         kernels : k functions K.
+        degree : see `slope_integral`.
         """
         r = low + width
-        return slope_integral(self.branches, low, r, r, *kernels, width=width)
+        return slope_integral(self.branches, low, r, r, *kernels, width=width, degree=degree)
 
     def slip_integral(self, c: Array, r: Array) -> Array:
         """Slip S(c; r) = (2/pi) int_c^r (g(x) - g(c))/sqrt(r^2 - x^2) dx [length].

@@ -344,10 +344,12 @@ class Tabulated(Profile):
                 value += factor * shape.outer_displacement(a, r, beyond)
         return value
 
-    def annulus_integrals(self, low: Array, width: Array, *kernels: Kernel) -> Array:
+    def annulus_integrals(
+        self, low: Array, width: Array, *kernels: Kernel, degree: float = 0.0
+    ) -> Array:
         """Parameters: see `Profile`."""
         if self._flanks:
-            return super().annulus_integrals(low, width, *kernels)
+            return super().annulus_integrals(low, width, *kernels, degree=degree)
         found = [
             self._spline.annulus(c, w, kernels)
             for c, w in zip(low.tolist(), width.tolist(), strict=True)

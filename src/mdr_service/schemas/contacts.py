@@ -155,7 +155,7 @@ class ElasticLayer(Strict):
     """Elastic layer on a rigid base: the more compliant body."""
 
     thickness: float = positive("length", "Thickness h of the layer")
-    base: Literal["bonded", "frictionless"] = Field(
+    base: materials.Base = Field(
         description="How the layer is held: `bonded` to its base, or sliding on it without friction"
     )
     poissons_ratio: float = quantity(
