@@ -95,7 +95,7 @@ sweeps: .venv/development
 
 # The charts of docs/accuracy.md: every one by `make charts`, one alone by `make chart-NAME`.
 CHARTS := pressure traction pareto hertz_contact partial_slip history contact_laws wear_evolution scaling wire stability calibration \
-	tables summary
+	tables layers summary
 charts:
 	for name in $(CHARTS); do $(MAKE) --no-print-directory chart-$$name || exit 1; done
 
@@ -103,7 +103,7 @@ chart-%: .venv-bench/peers
 	PYTHONPATH=.:benchmarks OMP_NUM_THREADS=1 .venv-bench/bin/python benchmarks/charts/$*.py
 
 # Need no reference codes: the references are in the tests and in the files of other charts.
-chart-stability chart-calibration chart-tables chart-summary: .venv/development
+chart-stability chart-calibration chart-tables chart-layers chart-summary: .venv/development
 	PYTHONPATH=.:benchmarks $(BIN)/python benchmarks/charts/$(@:chart-%=%).py
 
 # Figures of the service under load and attack, over loopback: half an hour of a quiet machine.

@@ -23,6 +23,7 @@ from verification import (
     oblique_impacts,
     ring_elements,
     stresses,
+    thresholds,
     torsion,
 )
 from verification.case import Case
@@ -65,8 +66,11 @@ _NOTES: Final = (
 )
 
 
-# Numerical solutions of the fuller problem, computed here.
-_OWN: Final = ("compressed-ball", "conforming-balls", "transverse-slip", "ring-elements")
+# Solutions and formulas that are evaluated here.
+_OWN: Final = (
+    *("compressed-ball", "conforming-balls", "layer-equation", "first-order"),
+    *("transverse-slip", "ring-elements"),
+)
 # Deviations below it, of results conditioned like a difference of loads, are rounding error.
 _ROUNDING: Final = 1e-11
 
@@ -87,7 +91,8 @@ class Row:
 def cases() -> Iterator[Case]:
     """Yield every case."""
     own = (normal_contacts, adhesion, frictional_contacts, oblique_impacts, stresses, abel_pairs)
-    for module in (*own, conforming_balls, measured, model_errors, layers, ring_elements, torsion):
+    others = conforming_balls, measured, model_errors, layers, ring_elements, torsion, thresholds
+    for module in (*own, *others):
         yield from module.cases()
 
 
@@ -136,7 +141,7 @@ def page(rows: Iterable[Row]) -> str:
     summary = (
         f"{len(rows)} cases, each sent to the HTTP service by `make verification`: "
         f"{len(rows) - own} from published equations, numbers and codes of "
-        f"{len(used) - len(_OWN)} sources, and {own} against independent numerical solutions "
+        f"{len(used) - len(_OWN)} sources, and {own} against independent solutions "
         f"({', '.join(f'`{key}`' for key in _OWN)}). {met} are within their bounds."
     )
     lines = ["# Verification", ""]

@@ -53,6 +53,10 @@ SOURCES: Final = {
         "N. N. Lebedev, Ia. S. Ufliand, J. Appl. Math. Mech. 22 (1958) 442-450, and W. C. Hayes et "
         "al., J. Biomech. 5 (1972) 541-551; integral equation solved in verification/layers.py"
     ),
+    "hayes": (
+        "W. C. Hayes et al., J. Biomech. 5 (1972) 541-551, factors for ν = 0.5; his numerical "
+        "solution is low by 0.9 % at a/h = 2"
+    ),
     "dimitriadis": "E. K. Dimitriadis et al., Biophys. J. 82 (2002) 2798-2810",
     "compressed-ball": (
         "A. I. Lur'e, Three-Dimensional Problems of the Theory of Elasticity, 1964: series of a "
@@ -62,6 +66,13 @@ SOURCES: Final = {
     "conforming-balls": (
         "The gap of two exact spheres, in closed form and by series of the solid ball and of the "
         "cavity (A. I. Lur'e, 1964), evaluated in verification/conforming_balls.py"
+    ),
+    "layer-equation": (
+        "The equation of `lebedev` for any profile: tests/oracles/layer_reference.py"
+    ),
+    "first-order": (
+        "Limits of simpler models to first order in the tolerance, from closed forms of g' and F_N "
+        "in tests/oracles/shapes.py"
     ),
     "transverse-slip": (
         "Boundary elements with the displacements of Cerruti and Coulomb's friction: "

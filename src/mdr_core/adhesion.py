@@ -87,6 +87,11 @@ class Curve:
         """Largest contact coordinate, with which the profile ends."""
         return float(self.profile.domain)
 
+    @property
+    def allowed(self) -> Any:
+        """Largest contact radius, as `domain`, with the words for its `end`."""
+        return self.profile
+
     def correction(self, contact: "AdhesiveContact", load: Indices, r: Array) -> Array | float:
         """Pressure over E* beyond the half-space's at radii, each under the load of an index.
 
@@ -132,8 +137,9 @@ class Curve:
         stable = values > 0
         end = self.end
         if not stable[-1] or (stable[0] and values[0] < values[1]):
+            words, remedy = self.allowed.end
             reason = (
-                f"to radius {end:.6g}, where the profile ends: extend it, or reduce the work"
+                f"to radius {self.allowed.domain:.6g}, {words}: reduce the work, or {remedy}"
                 if end < np.inf
                 else "without bound, or its radius at pull-off is not representable"
             )
@@ -467,8 +473,7 @@ def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, 
     if profile.is_flat_punch:
         depth = amount / curve.stiffness(amount) if of_force else amount
         return np.maximum(depth, 0.0), np.maximum(-depth, 0.0), states
-    validation.require_inside(
-        ("load", name), amount > curve.load(name, curve.stable[name][1][-1]), profile
-    )
+    beyond = amount > curve.load(name, curve.stable[name][1][-1])
+    validation.require_inside(("load", name), beyond, curve.allowed)
     at, states = curve.outermost(name, np.ravel(amount))
     return (at := at.reshape(np.shape(load))[()]), curve.retraction(at), states

@@ -194,8 +194,9 @@ def from_bodies(
     ratios = tuple(body.poissons_ratio for body in parts)
     moduli = 1 / normal, 1 / shear, _dundurs_beta(bodies)
     if layer is not None:
-        largest, nu = max(zip(compliances, ratios, strict=True), key=lambda each: each[0])
-        nu = ratios[-1] if compliances[-1] == largest else nu
+        # Of two equal bodies the second one.
+        both = zip(compliances[::-1], ratios[::-1], strict=True)
+        largest, nu = max(both, key=lambda each: each[0])
         if layer.poissons_ratio not in {None, nu}:
             detail = "differs from Poisson's ratio of the more compliant body: leave it out"
             raise InputError(("material", "layer", "poissons_ratio"), detail)

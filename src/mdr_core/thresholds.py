@@ -13,11 +13,11 @@ Source: manual, Which model does my case need?
 """
 
 from functools import lru_cache
-from math import atanh, pi
+from math import atan, atanh, pi
 from typing import Final, NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
@@ -29,7 +29,7 @@ from mdr_core.validation import LEAST_CHANGE, MOST_CHANGE, single
 
 # Depths z/a between which the largest shear stress below a paraboloid lies: at 0.38 for nu = 0, and
 # at 0.54 for nu = 1/2. Source: johnson, section 4.2.
-_DEPTHS: Final = np.linspace(0.37, 0.55, 60)
+_DEPTHS: Final = (0.37, 0.55)
 
 
 class Threshold(NamedTuple):
@@ -112,12 +112,11 @@ def of_contact(contact: NormalContact, tolerance: float) -> tuple[Threshold, ...
 @lru_cache(maxsize=64)
 def _shear_below(nu: float) -> float:
     """tau_max/p(0) on the axis below a paraboloid. Source: johnson, section 4.2."""
-    z = _DEPTHS
-    radial = -(1 + nu) * (1 - z * np.arctan(1 / z)) + 1 / (2 * (1 + z * z))
-    stress = (radial + 1 / (1 + z * z)) / 2
-    top = int(np.clip(stress.argmax(), 1, z.size - 2))
-    curve = np.polyfit(z[top - 1 : top + 2] - z[top], stress[top - 1 : top + 2], 2)
-    return float(curve[2] - curve[1] ** 2 / (4 * curve[0]))
+
+    def opposite(z: float) -> float:
+        return (1 + nu) * (1 - z * atan(1 / z)) / 2 - 0.75 / (1 + z * z)
+
+    return -float(minimize_scalar(opposite, bounds=_DEPTHS, method="bounded").fun)
 
 
 @lru_cache(maxsize=64)

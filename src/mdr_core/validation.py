@@ -222,7 +222,7 @@ def require_inside(
     ----------
     path : place of the loads in the input.
     outside : true for the loads that are too large.
-    profile : the profile, with its `domain` and the words for its `end`.
+    profile : the profile, or a limit with a `domain` and the words for its `end`.
     cause : word for the loads in the message.
     """
     if some(outside):

@@ -300,6 +300,13 @@ def test_layers_are_rejected_where_they_do_not_combine() -> None:
         layer.solve(Paraboloid(1.0), _material(20, BONDED, 0.3), contact_radius=1.0)
     with pytest.raises(InputError, match="10 times the thickness"):
         layer.solve(Paraboloid(1.0), _material(20, BONDED, 0.3), normal_force=100.0)
+    for work in (0.5, 10.0):
+        for load in ({"contact_radius": 0.6}, {"normal_force": 0.0}):
+            with pytest.raises(InputError, match=r"radius 0\.5, 10 times the thickness"):
+                layer.solve(Cone(1.0), _material(20, BONDED, 0.3), work_of_adhesion=work, **load)
+    # The flat alone is too large.
+    with pytest.raises(InputError, match="10 times the thickness"):
+        layer.solve(RoundedPunch(2.0, 1.0), _material(20, BONDED, 0.3), normal_force=1.0)
     with pytest.raises(InputError, match="exclude each other"):
         Material(1.0, body_thickness=1.0, layer=Layer(1.0, "frictionless"))
 

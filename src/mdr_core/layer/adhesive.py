@@ -10,7 +10,7 @@ import numpy as np
 
 from mdr_core import adhesion
 from mdr_core.layer.contact import LayerContact
-from mdr_core.layer.equation import States, largest_coordinate, states
+from mdr_core.layer.equation import Range, States, allowed, largest_coordinate, states
 from mdr_core.materials import Layer
 from mdr_core.profiles import FlatPunch, Profile
 from mdr_core.typing import Array, Indices
@@ -39,6 +39,11 @@ class LayerCurve(adhesion.Curve):
     def end(self) -> float:
         """Coordinate of the largest contact."""
         return largest_coordinate(self.profile, self.layer)
+
+    @property
+    def allowed(self) -> Range:
+        """Contact radii that the profile and the layer allow."""
+        return allowed(self.profile, self.layer)
 
     def pressed(self, *known: Any) -> LayerContact:
         """Return a contact without adhesion; `known` are the arguments of `NormalContact`."""

@@ -178,8 +178,23 @@ def _odd_polynomials(count: int) -> list[Kernel]:
     return [first] + [following] * (count - 1)
 
 
+class Range(NamedTuple):
+    """Contact radii that a profile and a layer allow."""
+
+    domain: float
+    """Largest contact radius [length]."""
+    end: tuple[str, str]
+    """Words for the end: the reason, and what to do."""
+
+
+def allowed(profile: Profile, layer: Layer) -> Range:
+    """Contact radii up to the end of the profile and to the largest part of the thickness."""
+    reach = LARGEST * layer.thickness
+    if profile.domain <= reach:
+        return Range(float(profile.domain), profile.end)
+    return Range(reach, (f"{LARGEST:g} times the thickness of the layer", "use finite elements"))
+
+
 def largest_coordinate(profile: Profile, layer: Layer) -> float:
     """Contact coordinate of the largest contact."""
-    return float(
-        profile.coordinate_from_radius(np.minimum(profile.domain, LARGEST * layer.thickness))
-    )
+    return float(profile.coordinate_from_radius(np.asarray(allowed(profile, layer).domain)))

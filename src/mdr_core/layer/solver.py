@@ -13,7 +13,7 @@ from mdr_core.errors import InputError
 from mdr_core.inversion import invert
 from mdr_core.layer.adhesive import LayerCurve
 from mdr_core.layer.contact import LayerContact
-from mdr_core.layer.equation import LARGEST, largest_coordinate, states
+from mdr_core.layer.equation import allowed, largest_coordinate, states
 from mdr_core.layer_response import softening
 from mdr_core.materials import Layer, Material
 from mdr_core.normal import CONTROLS
@@ -68,13 +68,17 @@ def solve(
     validation.require_single_positive(("material", "e_star"), modulus)
     loads = dict(zip(CONTROLS, (indentation_depth, normal_force, contact_radius), strict=True))
     softening(layer, np.ones(1))
+    # Checks the loads as well.
+    name, load = validation.only_one(("load",), loads)
+    reach = allowed(profile, layer)
+    radius = load if name == "contact_radius" else full(profile.first_radius, load)
+    outside = np.asarray(np.maximum(radius, profile.first_radius) > reach.domain)
+    validation.require_inside(("load", name), outside, reach)
     if work_of_adhesion is not None:
         validation.require_single_positive(("material", "work_of_adhesion"), work_of_adhesion)
         c = sqrt(2 * pi) * sqrt(work_of_adhesion) / sqrt(modulus)
         curve = LayerCurve(profile, c, layer)
         return adhesion.on_curve(curve, modulus, material, loads, range_of_adhesion)
-    # Checks the loads as well.
-    name, load = validation.only_one(("load",), loads)
     coordinate = _coordinate(profile, layer, name, load / modulus if name == CONTROLS[1] else load)
     contact = LayerContact(profile, modulus, coordinate, name, material, layer=layer)
     vars(contact)[name] = load
@@ -85,33 +89,18 @@ def _coordinate(profile: Profile, layer: Layer, name: str, load: Array) -> Array
     """Contact coordinate under loads, forces over E*."""
     validation.require_not_negative(("load", name), load)
     validation.require_finite(("load", name), load)
-    of_force, reach = name == "normal_force", LARGEST * layer.thickness
-    end, start = np.inf, load
+    of_force = name == "normal_force"
     if name == "contact_radius":
-        start = coordinate_from_radius(profile, load)
-        beyond = np.asarray(load > reach)
-    elif profile.is_flat_punch:
-        start = load / states(profile, layer, np.ones(1)).stiffness[0] if of_force else load
-        beyond = np.asarray(profile.contact_radius(start) > reach)
-    else:
-        end, most = (
-            largest_coordinate(profile, layer),
-            (profile.largest_loads or (np.inf, np.inf))[of_force],
-        )
-        start = normal.solve(profile, 1.0, **{name: np.minimum(load, most)}).coordinate
-        beyond = np.asarray(start < 0)
-        if np.max(start) * _DEEPER > end:
-            last = states(profile, layer, np.atleast_1d(end))
-            beyond = np.asarray(load > (last.force if of_force else last.depth)[0])
-    if beyond.any():
-        detail = (
-            f"leads to a contact radius beyond {min(reach, float(profile.domain)):.6g}, where the "
-            f"profile ends or the contact exceeds {LARGEST:g} times the thickness: reduce the "
-            "load, or use finite elements"
-        )
-        raise InputError(("load", name, *validation.first_index(beyond)), detail, beyond)
-    if end == np.inf:
-        return start
+        return coordinate_from_radius(profile, load)
+    if profile.is_flat_punch:
+        return load / states(profile, layer, np.ones(1)).stiffness[0] if of_force else load
+    end = largest_coordinate(profile, layer)
+    most = (profile.largest_loads or (np.inf, np.inf))[of_force]
+    start = normal.solve(profile, 1.0, **{name: np.minimum(load, most)}).coordinate
+    if np.max(start) * _DEEPER > end:
+        last = states(profile, layer, np.atleast_1d(end))
+        beyond = np.asarray(load > (last.force if of_force else last.depth)[0])
+        validation.require_inside(("load", name), beyond, allowed(profile, layer))
 
     def sloped(s: Array) -> tuple[Array, Array]:
         found = states(profile, layer, np.ravel(s))
