@@ -117,7 +117,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
                 "--curve-units",
                 metavar="DEPTH,FORCE",
                 help="units of the curve in FILE, such as nm,uN, where its headings name none; "
-                "a curve is converted to metres and newtons",
+                "a curve is converted to metres and newtons, the units of the other options",
             )
         # By default -1e-3 counts as an option; argparse has no public way to change that.
         parser._negative_number_matcher = re.compile(r"-\.?\d")  # noqa: SLF001

@@ -22,11 +22,14 @@ REQUEST = {
 }
 
 
-def test_options_give_the_bytes_of_the_request(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("force", "written"), [(10.0, "10"), ([10.0, 20.0, 50.0], "10,20,50")])
+def test_options_give_the_bytes_of_the_request(
+    force: float | list[float], written: str, tmp_path: Path
+) -> None:
     file, by_file, by_options = (tmp_path / name for name in ("request.json", "a", "b"))
-    file.write_text(json.dumps(REQUEST), "utf-8")
+    file.write_text(json.dumps(REQUEST | {"load": {"normal_force": force}}), "utf-8")
     assert main(["normal", str(file), "-o", str(by_file)]) == 0
-    assert main(["normal", *OPTIONS, "--normal-force", "10", "-o", str(by_options)]) == 0
+    assert main(["normal", *OPTIONS, "--normal-force", written, "-o", str(by_options)]) == 0
     assert by_file.read_bytes() == by_options.read_bytes()
 
 

@@ -166,3 +166,37 @@ def test_directions_ignore_reversals_of_the_noise() -> None:
     signs = residuals.directions(depth)
     assert np.sum(np.diff(signs) != 0) == 1
     assert abs(int(np.argmax(np.diff(signs) != 0)) - 49) <= 3
+
+
+@pytest.mark.parametrize("names", [("e_star",), ("e_star", "force_offset")])
+def test_curve_that_is_met_exactly_has_errors_of_rounding(names: tuple[str, ...]) -> None:
+    depth = np.repeat([0.25, 1.0], 3)
+    force = np.repeat([1.0, 8.0], 3)
+    found = fit.solve(BALL, indentation_depth=depth, normal_force=force, fit=names)
+    assert found.standard_errors.min() > 0
+    assert found.error_estimate < 1e-12
+
+
+def test_curve_before_contact_with_a_layer_is_refused() -> None:
+    layer = mdr.Layer(thickness=1.0, base="frictionless")
+    depth = np.linspace(-2, -1, 20)
+    # The interpolated force is not exactly 0 at a depth of 0.
+    with pytest.raises(mdr.InputError, match="does not rise"):
+        fit.solve(
+            BALL, indentation_depth=depth, normal_force=depth + 3, fit=["e_star"], layer=layer
+        )
+
+
+@pytest.mark.long
+def test_intervals_cover_all_parameters_without_adhesion() -> None:
+    random, covered, curves = np.random.default_rng(111), [], 100
+    names, depth = ("e_star", "contact_point", "work_of_adhesion"), np.linspace(0, 1, 24)
+    for _ in range(curves):
+        force = hertz(depth)
+        force = force + noise(random, force, 0.01)
+        found = fit.solve(BALL, indentation_depth=depth, normal_force=force, fit=names)
+        off = np.array([getattr(found, name) for name in names]) - [1, 0, 0]
+        # Quantile of Student's t for 20 degrees of freedom, fewer than those of any of the fits.
+        covered.append(np.abs(off) < 2.086 * found.standard_errors)
+    # 0.95 less three standard deviations of the count.
+    assert np.mean(covered, axis=0).min() >= 0.95 - 3 * np.sqrt(0.95 * 0.05 / curves)

@@ -220,18 +220,13 @@ class _Loop:
         some = slice(None, None, max(1, self.force.size // _POINTS))
         measured, ones = self.force[some] / self.size, np.ones_like(self.force[some])
         best, found, on_first = inf, None, self.places(np.zeros(5)) / self.amplitude
-        known = self.known["rig_compliance"]
-        for in_rig in _IN_RIG[: 1 if known == 0 else None].tolist():
+        for in_rig in _IN_RIG[: 1 if self.known["rig_compliance"] == 0 else None].tolist():
             places = (1 - in_rig) * part + in_rig * reached
             for ratio in _TRIED.tolist():
                 first = np.interp(on_first * ratio, places, reached)
                 columns = np.column_stack([self.branches(first)[some], ones])
                 (limit, offset), *_ = np.linalg.lstsq(columns, measured)
                 whole = self.amplitude / ratio
-                if limit > 0 and known and in_rig:
-                    # C mu F_N is the displacement of the rig at full slip.
-                    limit = in_rig * whole / (known * self.size)
-                    offset = np.mean(measured - limit * columns[:, 0])
                 left = float(np.sum(np.square(columns @ [limit, offset] - measured)))
                 if limit > 0 and left < best:
                     friction = limit * self.size / float(pressed.normal_force)
