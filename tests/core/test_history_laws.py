@@ -28,7 +28,8 @@ G_STAR = 2.9
 MU = 0.37
 SHIFT = MU * E_STAR / G_STAR
 #: Gauss-Lobatto rule: it includes the panel ends, so that no kink hides between two panels.
-NODES = np.concatenate([[-1.0], Legendre.basis(6).deriv().roots(), [1.0]])
+#: Newer versions of NumPy return real roots as complex numbers.
+NODES = np.concatenate([[-1.0], Legendre.basis(6).deriv().roots().real, [1.0]])
 WEIGHTS = 2 / (42 * Legendre.basis(6)(NODES) ** 2)
 LAST = np.stack([Legendre.basis(n)(NODES) * WEIGHTS for n in (4, 5)], axis=1)
 
