@@ -83,9 +83,8 @@ class LoopQuery(Query):
         "length", "Measured displacements in the order of time, of a steady loop", **_CURVE
     )
     tangential_force: list[Signed] = quantity("force", "Measured tangential forces", **_CURVE)
-    fit: Annotated[list[LoopFitted], OnceEach] = Field(
-        default=None,
-        description="Parameters to fit; by default `force_offset` and those of `g_star` (in "
+    fit: Annotated[list[LoopFitted], OnceEach] = left_out(
+        "Parameters to fit; by default `force_offset` and those of `g_star` (in "
         "`material`), `friction_coefficient` and `rig_compliance` that are left out. Unless "
         "fitted, `force_offset` is 0 and `displacement_offset` the middle of the displacements.",
         min_length=1,
