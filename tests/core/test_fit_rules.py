@@ -200,3 +200,12 @@ def test_intervals_cover_all_parameters_without_adhesion() -> None:
         covered.append(np.abs(off) < 2.086 * found.standard_errors)
     # 0.95 less three standard deviations of the count.
     assert np.mean(covered, axis=0).min() >= 0.95 - 3 * np.sqrt(0.95 * 0.05 / curves)
+
+
+def test_one_depth_beyond_the_least_force_is_refused() -> None:
+    depth, force = np.repeat([0.0, 1.0], 6), np.tile([1.0, 2.0, 3.0], 4)
+    force[0] = -1.0
+    force[6] = -2.0
+    names = ("e_star", "work_of_adhesion")
+    with pytest.raises(mdr.InputError, match="different depths in contact"):
+        fit.solve(BALL, indentation_depth=depth, normal_force=force, fit=names)

@@ -20,6 +20,8 @@ from mdr_core.residuals import FALSE_ALARM, ROUNDING
 
 # Multiple of the pull-off depth beyond which no point is in contact.
 _AFTER: Final = 1.5
+# Standard errors of the contact point, within which points are at the depth of the least force.
+_NEAR: Final = 2.0
 # Fewest points after a pull-off: one alone would decide on offset and adhesion.
 _DETACHED: Final = 3
 # Increase of the sum of squares, over the variance of the noise, up to which w = 0 is as likely.
@@ -68,6 +70,26 @@ def _rounding(model: Model) -> float:
     return model.free * (ROUNDING * float(np.abs(model.force).max())) ** 2
 
 
+def _states(model: Model, found: Parameters) -> adhesion.Curve:
+    c = sqrt(2 * pi * found["work_of_adhesion"] / found["e_star"])
+    return adhesion.Curve(model.profile, c)
+
+
+def _least_stable(model: Model, found: Parameters) -> float:
+    """Return the depth of the least force, less the error of the contact point.
+
+    To leave out points up to the least of noisy forces, which is low by chance, would bias the fit.
+    About the depth of the least force the force hardly changes.
+    """
+    states = _states(model, found)
+    depth = found["contact_point"] + float(states.load("indentation_depth", states.at_pull_off))
+    if "contact_point" not in model.fit:
+        return depth
+    deviations = Precision.of(model.at(found)[1], model.fit, "indentation_depth").deviations
+    scatter = sqrt(model.squares(found) / model.free)
+    return depth - _NEAR * scatter * float(deviations[model.fit.index("contact_point")])
+
+
 def _touching(curve: Model) -> tuple[Model, Parameters]:
     """Return the model of the states beyond the least force and after the pull-off, and its fit.
 
@@ -77,16 +99,21 @@ def _touching(curve: Model) -> tuple[Model, Parameters]:
     """
     order = np.argsort(curve.depth, kind="stable")
     depth, force = curve.depth[order], curve.force[order]
-    least = int(np.argmin(force))
-    curve.require_points(depth.size - 1 - least)
+    least = int(np.argmin(force)) + 1
+    curve.require_points(depth.size - least)
 
     def with_detached(count: int) -> Model:
-        used = np.r_[:count, least + 1 : depth.size]
+        used = np.r_[:count, least : depth.size]
         return replace(curve, depth=depth[used], force=force[used], touches=used >= count)
 
-    jump = int(np.argmin(np.diff(force[: least + 1]))) + 1 if least else 0
+    jump = int(np.argmin(np.diff(force[:least]))) + 1 if least > 1 else 0
     touching = with_detached(0)
     found = touching.best()
+    near = int(np.searchsorted(depth, _least_stable(touching, found)))
+    if max(near, jump) < least:
+        least = max(near, jump)
+        touching = with_detached(0)
+        found = touching.best()
     if jump < _DETACHED:
         return touching, found
     with suppress(InputError):
@@ -96,8 +123,7 @@ def _touching(curve: Model) -> tuple[Model, Parameters]:
         more = max(whole.squares(joint) - squares, 0.0)
         if fdtrc(jump, free, more / jump / (squares / free)) > FALSE_ALARM:
             return whole, joint
-    c = sqrt(2 * pi * found["work_of_adhesion"] / found["e_star"])
-    pull_off = adhesion.Curve(curve.profile, c).least["indentation_depth"]
+    pull_off = _states(curve, found).least["indentation_depth"]
     after = int(np.searchsorted(depth, found["contact_point"] + _AFTER * pull_off))
     after = min(after, jump)
     if after < _DETACHED:

@@ -160,6 +160,8 @@ class Model:
     def best(self) -> Parameters:
         """Return the parameters of the least sum of squares, or an InputError."""
         low, high = float(self.depth.min()), float(self.depth.max())
+        if low == high:
+            raise InputError(("indentation_depth",), "must hold different depths in contact")
         tried, ratios, limit = np.zeros(1), np.zeros(1), self.farthest
         if "contact_point" in self.fit:
             count = int(_BEFORE * np.log10(self.reach / _NEAREST))
@@ -212,7 +214,7 @@ class Model:
             forces, slopes = self.at(values(np.frombuffer(place)))
             return (forces - self.force) / size, slopes * unit / size
 
-        with suppress(ValueError, np.linalg.LinAlgError):
+        with suppress(ValueError, ZeroDivisionError, np.linalg.LinAlgError):
             found = minimum(
                 lambda x: evaluated(x.tobytes())[0],
                 first,
