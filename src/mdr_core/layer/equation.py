@@ -192,7 +192,8 @@ def allowed(profile: Profile, layer: Layer) -> Range:
     reach = LARGEST * layer.thickness
     if profile.domain <= reach:
         return Range(float(profile.domain), profile.end)
-    return Range(reach, (f"{LARGEST:g} times the thickness of the layer", "use finite elements"))
+    reason = f"where it exceeds {LARGEST:g} times the thickness of the layer"
+    return Range(reach, (reason, "use finite elements"))
 
 
 def largest_coordinate(profile: Profile, layer: Layer) -> float:
