@@ -60,9 +60,9 @@ def places(meaning: str) -> Any:
     return quantity("length", meaning, default=None, **size)
 
 
-def left_out(description: str, **field: Any) -> Any:
+def left_out(description: str) -> Any:
     """Return a field that is optional, but not null."""
-    return Field(default=None, description=description, **field)
+    return Field(default=None, description=description)
 
 
 def one_of(*names: str) -> dict[str, Any]:
