@@ -22,7 +22,7 @@ _SAME, _PART = 1e-8, 0.1
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Estimate(validity.ContactResults):
+class LeastSquaresFit(validity.ContactResults):
     """Parameters that are fitted to a measured curve, with their standard errors."""
 
     fit: tuple[str, ...]
@@ -46,7 +46,7 @@ class Estimate(validity.ContactResults):
 
 @dataclass(frozen=True, eq=False)
 class Precision:
-    """How well a curve determines the parameters of its least-squares fit, to first order."""
+    """Precision to which a curve determines the parameters of its fit, to first order."""
 
     scale: Array
     """Sizes of the slopes of the curve in the parameters, shape (n,)."""

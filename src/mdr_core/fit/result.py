@@ -13,7 +13,7 @@ from mdr_core import adhesion, normal, residuals
 from mdr_core import layer as layers
 from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
-from mdr_core.estimation import Estimate, Precision
+from mdr_core.estimation import LeastSquaresFit, Precision
 from mdr_core.fit.model import PARAMETERS, Model, Parameters
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
@@ -35,7 +35,7 @@ _REMEDIES: Final = {
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Fit(Estimate):
+class Fit(LeastSquaresFit):
     """Fitted parameters with their standard errors."""
 
     normal: NormalContact

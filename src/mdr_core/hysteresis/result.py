@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Final
 
 from mdr_core.errors import Notice
-from mdr_core.estimation import Estimate
+from mdr_core.estimation import LeastSquaresFit
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
@@ -20,7 +20,7 @@ PARAMETERS: Final = (
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class LoopFit(Estimate):
+class LoopFit(LeastSquaresFit):
     """Fitted parameters of a loop with their standard errors."""
 
     turning: TangentialContact

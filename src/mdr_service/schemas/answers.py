@@ -139,7 +139,7 @@ class NormalAnswer(ContactAnswer):
     )
 
 
-class EstimateAnswer(SolvedAnswer):
+class LeastSquaresAnswer(SolvedAnswer):
     """Fitted parameters with their errors, and residuals."""
 
     fit: list[str] = Field(description="Fitted parameters, in the order of their errors.")
@@ -156,7 +156,7 @@ class EstimateAnswer(SolvedAnswer):
     residual: list[float] = _force("Measured less fitted forces")
 
 
-class FitAnswer(EstimateAnswer):
+class FitAnswer(LeastSquaresAnswer):
     """Parameters in lists of one entry, and the curve."""
 
     e_star: list[float] = _pressure("Effective modulus E*")
@@ -174,7 +174,7 @@ class FitAnswer(EstimateAnswer):
     normal_force: list[float] = _force("Fitted forces")
 
 
-class LoopAnswer(EstimateAnswer):
+class LoopAnswer(LeastSquaresAnswer):
     """Parameters in lists of one entry, and the loop."""
 
     g_star: list[float] = _pressure("Effective shear modulus G*")
