@@ -140,8 +140,8 @@ def test_a_hertz_contact_of_each_radius_and_modulus() -> None:
     ("given", "message"),
     [
         (([1.0, -1.0], 1.0, 1.0, 0.3), "radius: must be positive"),
-        ((1.0, [1.0, 0.0], 1.0, 0.3), "material.e_star: must be positive"),
-        ((1.0, 1.0, [np.inf, 1.0], 0.3), "material.g_star: must be finite"),
+        ((1.0, [1.0, 0.0], 1.0, 0.3), r"^e_star.*: must be positive"),
+        ((1.0, 1.0, [np.inf, 1.0], 0.3), r"^g_star.*: must be finite"),
         ((1.0, 1.0, 1.0, [0.3, -0.3]), "friction_coefficient: must be positive"),
         (([1.0, 2.0], 1.0, [1.0, 1.0, 1.0], 0.3), "one for each of 3 contacts"),
     ],

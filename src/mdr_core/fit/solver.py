@@ -80,6 +80,7 @@ def solve(
 
     Examples
     --------
+    >>> from mdr_core import normal
     >>> from mdr_core.profiles import Paraboloid
     >>> d = np.linspace(-1e-6, 2e-6, 61)
     >>> force = normal.solve(Paraboloid(0.01), 2e9, indentation_depth=np.maximum(d - 3e-7, 0.0))
