@@ -28,7 +28,7 @@ GENERATORS: dict[str, Callable[[Draw], dict[str, Any]]] = {
     **PROFILE_GENERATORS,
     "flat_punch": lambda _: {"radius": 1.0},
     "two_spheres": lambda draw: {
-        "radii": [1 / draw.uniform(0.01, 0.8), draw.choice([-2.0, 1.5, 10.0])]
+        "radii": [ball := 1 / draw.uniform(0.01, 0.8), draw.choice([-2 * ball, 1.5, 10.0])]
     },
 }
 NAMES = ("indentation_depth", "normal_force", "normal_stiffness", "elastic_energy")
