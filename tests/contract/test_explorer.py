@@ -199,7 +199,7 @@ def test_press_computes_with_a_thickness(
     assert visit.number("Contact radius a") == "1 m"
     shown = float(visit.number("Indentation depth d").split()[0])
     assert shown == pytest.approx(depth, rel=1e-4, abs=0)
-    assert "layer" in visit.page.inner_text("#accuracy")
+    assert "lebedev" in visit.page.inner_text("#accuracy")
     # With adhesion, too: its curve holds many loads.
     visit.fill("w", "0.01")
     assert visit.state() == "current"
@@ -213,7 +213,7 @@ def test_press_computes_with_a_thickness(
 def test_contact_that_a_layer_cannot_carry_is_refused_at_its_load(visit: Visit) -> None:
     visit.open("?kind=paraboloid")
     visit.page.fill("#field-thickness", "1e-3")
-    visit.page.locator("#problem").get_by_text("a contact radius beyond 0.01 mm").wait_for()
+    visit.page.locator("#problem").get_by_text("beyond radius 0.01 mm, where").wait_for()
     assert visit.state() == "refused"
 
 
