@@ -140,9 +140,9 @@ def test_two_equal_bodies_and_units_of_micrometres() -> None:
 
 
 @pytest.mark.every(8)
-@pytest.mark.parametrize("number", range(2 * len(KINDS)))
+@pytest.mark.parametrize("number", range(len(KINDS)))
 def test_random_cases_with_thirty_digits(number: int) -> None:
-    error, scene = random_layers.worst(54 + number, KINDS[number % len(KINDS)])
+    error, scene = random_layers.worst(54 + number, KINDS[number])
     assert error.error <= min(error.stated, random_layers.BOUND), (error, scene)
 
 
