@@ -41,10 +41,10 @@ class InputError(MDRError, ValueError):
     """
 
     def __init__(self, path: tuple[str | int, ...], detail: str, cases: Any = None) -> None:
-        first, *rest = path or ("",)
-        names = rest if rest and first in _GROUPS else path
+        names = path[1:] if len(path) > 1 and path[0] in _GROUPS else path
         parts = (f"[{name}]" if isinstance(name, int) else f".{name}" for name in names)
-        super().__init__(f"{''.join(parts).removeprefix('.')}: {detail}".removeprefix(": "))
+        argument = "".join(parts).removeprefix(".")
+        super().__init__(f"{argument}: {detail}" if argument else detail)
         self.path = path
         self.detail = detail
         self.cases = cases

@@ -52,9 +52,10 @@ def root_step(annulus: Annulus, r: Array) -> Array:
     """Return sqrt(a^2 - r^2) - sqrt(c^2 - r^2), the second term for r < c only [length]."""
     a, width, c, *_ = annulus
     root_a = np.sqrt((a - r) * (a + r))
-    if not some(c > r):
+    within = c > r
+    if not some(within):
         return root_a
-    return np.where(c > r, width * (a + c) / (root_a + inverse_hypot(c, r)), root_a)
+    return np.where(within, width * (a + c) / (root_a + inverse_hypot(c, r)), root_a)
 
 
 def log_ratio(annulus: Annulus, r: Array) -> Array:

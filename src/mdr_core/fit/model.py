@@ -97,7 +97,7 @@ class Model:
     def reduced(self, pressed: Array, ratio: float) -> tuple[Array, Array, Array]:
         """Return forces over E*, and their slopes in the depth and in w/E*.
 
-        With adhesion the force at less depth than that of the least force is the least.
+        With adhesion, depths below the depth of the least force have the least force.
 
         Parameters: the depths from first contact, and w/E* [length].
         """

@@ -24,7 +24,7 @@ from mdr_core.typing import Array
 from mdr_core.validation import (
     as_curve,
     require_not_negative,
-    require_positive,
+    require_single_positive,
     require_type,
     single,
 )
@@ -117,10 +117,12 @@ def solve(
         if (name in fit) != (known[name] is None):
             detail = "is fitted: leave it out" if name in fit else "is needed unless it is fitted"
             raise InputError((name,), detail)
-        if name not in fit:
-            value = single((name,), known[name] or 0.0)
-            is_rig = name == "rig_compliance"
-            (require_not_negative if is_rig else require_positive)((name,), np.asarray(value))
+        if (value := known[name]) is None:
+            continue
+        if name == "rig_compliance":
+            require_not_negative((name,), np.asarray(single((name,), value)))
+        else:
+            require_single_positive((name,), value)
     lists = {"tangential_displacement": tangential_displacement}
     curve = as_curve("displacements", **lists, tangential_force=tangential_force)
     if curve[0].size < _FEWEST * len(fit) or np.ptp(curve[0]) == 0:
