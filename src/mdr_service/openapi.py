@@ -28,8 +28,8 @@ column per quantity, in which infinities are written `inf`; `npz`, an archive of
 values of the response, whose width and height `?size=` sets, and whose units `?units=` names.
 
 **GET.** Five queries are available by parameters as well, for spreadsheets and browsers: numbers,
-and one range. `answers` chooses members of the response, and with `format=txt` a single number is
-returned as plain text.
+lists of loads, and one range. `answers` chooses members of the response, and with `format=txt` a
+single number is returned as plain text.
 
 **Errors** are `application/problem+json` (RFC 9457); `errors` points into the request.
 """
