@@ -30,10 +30,15 @@ SECONDS = 10.0
 # Time a browser spends on drawing before its next query [s].
 DRAWING = 0.04
 SLIDERS = {"press": "load", "push": "amount"}
+# Queries of one drawing of the tab that the browsers drag.
+QUERIES = 4
 # Moves a slider step by step, each as soon as the previous charts are drawn; returns the times.
 DRAG = """async key => {
     const drawn = async () => {
-        while (!document.body.dataset.drawn) await new Promise(requestAnimationFrame);
+        while (!document.body.dataset.drawn) {
+            if (document.body.dataset.state === "refused") throw new Error("a query was refused");
+            await new Promise(requestAnimationFrame);
+        }
     };
     await drawn();
     const slider = document.querySelector(`.field[data-key=${key}] [type=range]`);
@@ -74,28 +79,28 @@ def first_chart(context: BrowserContext, address: str) -> float:
     return taken
 
 
-def drag(page: Page, address: str, tab: str, kind: str) -> list[float]:
+def drag(page: Page, address: str, tab: str, kind: str, slider: str = "") -> list[float]:
     """Return the times from a slider to the new charts [ms]."""
     page.goto(f"{address}?tab={tab}&kind={kind}")
-    times: list[float] = page.evaluate(DRAG, SLIDERS[tab])
+    times: list[float] = page.evaluate(DRAG, slider or SLIDERS[tab])
     return times
 
 
 def recorded(page: Page, address: str) -> list[list[Any]]:
-    """Return the requests of a dragged slider, grouped by drawing."""
+    """Return the requests of a dragged slider that changes all charts, grouped by drawing."""
     requests: list[Any] = []
     page.on(
         "request",
         lambda each: each.method == "POST" and requests.append([each.url, each.post_data_json]),
     )
-    drag(page, address, "push", "rounded_punch")
-    of_path = [[url.partition("/v1")[2], body] for url, body in requests[4:]]
-    return [of_path[i : i + 4] for i in range(0, len(of_path) - 3, 4)]
+    drag(page, address, "push", "rounded_punch", "load")
+    of_path = [[url.partition("/v1")[2], body] for url, body in requests]
+    return [of_path[i : i + QUERIES] for i in range(0, len(of_path) - QUERIES + 1, QUERIES)]
 
 
 async def dragging(port: int, drawings: list[list[Any]]) -> None:
     """Send the requests of a browser whose slider is dragged continuously."""
-    async with clients(port, 4) as connections:
+    async with clients(port, QUERIES) as connections:
         while True:
             for drawing in drawings:
                 requests = [post(f"/v1{path}", body) for path, body in drawing]

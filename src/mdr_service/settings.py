@@ -52,7 +52,7 @@ class Settings(BaseModel):
         10.0, gt=0, le=86_400, description="Maximum time of a query in a compute process [s]."
     )
     queue_length: int = Field(
-        16, ge=0, description="Maximum number of queries that wait for a process."
+        64, ge=0, description="Maximum number of queries that wait for a process."
     )
     queue_seconds: float = Field(
         4.0, gt=0, le=86_400, description="Maximum time for which a query waits for a process [s]."

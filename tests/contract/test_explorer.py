@@ -234,6 +234,18 @@ def test_latest_slider_position_is_drawn(visit: Visit) -> None:
     assert visit.number("Tangential force F_x") == "27 N"
 
 
+def test_only_what_a_change_affects_is_computed_again(visit: Visit) -> None:
+    visit.open("?tab=push")
+    asked: list[str] = []
+    visit.page.on(
+        "request",
+        lambda each: asked.append(each.url) if each.method == "POST" else None,
+    )
+    visit.fill("amount", "0.4")
+    # The curve of all forces and the twist do not depend on the force.
+    assert sorted(url.rpartition("/v1/")[2] for url in asked) == ["stress", "tangential"]
+
+
 def pasted(visit: Visit, text: str) -> None:
     with visit.changing():
         visit.page.fill("#table", text)
