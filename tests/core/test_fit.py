@@ -141,6 +141,7 @@ def off_by(shape: str, noise: float, seed: int, curves: int) -> Array:
     return np.array(rows)
 
 
+@pytest.mark.long
 def test_points_after_the_pull_off_are_not_left_out_in_noise() -> None:
     """Without them, offset, adhesion and contact point of a cone compensate within noise."""
     assert np.abs(off_by("cone", 0.01, seed=1, curves=2)).max() < 4

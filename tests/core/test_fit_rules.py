@@ -117,6 +117,7 @@ def test_two_depths_do_not_determine_three_parameters() -> None:
         fit.solve(BALL, indentation_depth=depth, normal_force=force, fit=fit.PARAMETERS[:3])
 
 
+@pytest.mark.long
 def test_no_adhesion_is_held_at_zero_and_said() -> None:
     random, covered, held = np.random.default_rng(107), [], 0
     names, depth = ("e_star", "work_of_adhesion"), np.linspace(0, 1, 40)

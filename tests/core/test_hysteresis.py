@@ -100,6 +100,7 @@ def test_energy_is_the_area_of_the_loop() -> None:
         assert found.dissipated_energy == pytest.approx(area, rel=1e-5, abs=0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rig", [None, 0.5])
 def test_errors_of_the_energy_are_those_of_its_standard_deviation(rig: float | None) -> None:
     random = np.random.default_rng(5)

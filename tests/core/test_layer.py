@@ -251,6 +251,7 @@ def test_largest_pressure_of_a_rounded_punch() -> None:
     assert contact.maximum_pressure > fields.pressure(contact, 0.0)[0]
 
 
+@pytest.mark.long
 def test_modulus_from_curves_with_noise() -> None:
     rng = np.random.default_rng(19)
     sample, ball = Layer(4e-6, "bonded", 0.5), Paraboloid(5e-6)

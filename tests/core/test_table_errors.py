@@ -40,12 +40,10 @@ def compared(table: Table) -> tuple[Array, Array, set[str]]:
     return np.maximum(*missed), stated, {notice.code for notice in found.warnings}
 
 
-@pytest.mark.parametrize(
-    ("first", "count"), [(0, 250), pytest.param(1000, 700, marks=pytest.mark.long)]
-)
-def test_random_tables_are_covered(first: int, count: int) -> None:
+@pytest.mark.long
+def test_random_tables_are_covered() -> None:
     missed, stated, silent = [], [], 0
-    for seed in range(first, first + count):
+    for seed in range(1000, 1700):
         off, known, codes = compared(table_campaign.drawn(seed))
         missed.append(off)
         stated.append(known)
@@ -54,7 +52,7 @@ def test_random_tables_are_covered(first: int, count: int) -> None:
     ratio = np.concatenate(missed) / np.concatenate(stated)
     assert np.mean(ratio <= 1) >= 0.96
     assert np.mean(ratio <= 3) >= 0.98
-    assert silent <= max(1, count // 300)
+    assert silent <= 2
 
 
 def test_axis_point_within_rounding_is_on_the_axis() -> None:
@@ -118,6 +116,7 @@ def test_tip_of_a_long_table_in_even_heights_is_covered() -> None:
     assert (missed <= np.asarray(found.data_error)).all()
 
 
+@pytest.mark.long
 def test_pressures_of_random_tables_are_covered() -> None:
     """On the axis and at 0.3 of the contact radius, where both pressures are finite."""
     ratios = []

@@ -116,6 +116,7 @@ CURVES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", CURVES)
 def test_force_is_that_of_the_body(name: str) -> None:
     CURVES[name]().holds()
