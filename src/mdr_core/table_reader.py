@@ -76,7 +76,7 @@ class MeasuredCurve(NamedTuple):
     normal_force: Array
     """Forces [force]."""
     time: Array | None = None
-    """Times [s], None without a column of them."""
+    """Times from the first point [s], None without a column of them."""
 
 
 class ParsedFile(NamedTuple):
@@ -90,7 +90,7 @@ class ParsedFile(NamedTuple):
     lines: list[int]
     """Line of each point."""
     time: list[float] | None = None
-    """Times of a curve [s], if a column has a unit of time and does not fall."""
+    """Times of a curve from its first point [s], if a column has their unit and does not fall."""
     segments: list[str] | None = None
     """Kind of the segment of each point of a curve, if a column tells it."""
 
@@ -350,4 +350,4 @@ def _time(rows: Sequence[_Row], titles: list[Title], numeric: list[int]) -> list
         return None
     times = _column(rows, place)
     rises = np.isfinite(times).all() and np.all(np.diff(times) >= 0)
-    return _scaled(times.tolist(), unit[2]) if rises else None
+    return _scaled((times - times[0]).tolist(), unit[2]) if rises else None

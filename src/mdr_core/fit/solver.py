@@ -17,6 +17,7 @@ from mdr_core.fit import adhesive
 from mdr_core.fit.model import PARAMETERS, Model
 from mdr_core.fit.result import Fit, result
 from mdr_core.layer import DepthCurve
+from mdr_core.layer.equation import LARGEST
 from mdr_core.materials import RIGID, Body, Layer, from_bodies
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
@@ -88,7 +89,7 @@ def solve(
         adhesion.
     time : times of the points, which do not fall, shape (k,).
     drift : "hold" to subtract the drift of the depths that the last hold at a constant low force
-        shows, by a line of least squares. The depth at the first point stays.
+        shows, by a line of least squares; rate times time is subtracted.
     drift_rate, drift_rate_error : drift to subtract in its place [length/time], and its standard
         deviation, 0 by default.
 
@@ -163,6 +164,9 @@ def _on_layer(
         raise InputError(("layer",), "cannot be combined with a fitted work_of_adhesion")
     if body_thickness is not None:
         raise InputError(("layer",), "and body_thickness exclude each other: give one of them")
+    if profile.first_radius > LARGEST * layer.thickness:
+        detail = f"must be at least the radius of the flat face over {LARGEST:g}"
+        raise InputError(("layer", "thickness"), detail)
     return DepthCurve.up_to(profile, layer, max(float(depth.max()), 2 * float(np.ptp(depth))))
 
 
@@ -219,8 +223,7 @@ def _without_drift(
     if found is None:
         detail = "must be hold, of a curve with one at a constant force below half of the largest"
         raise InputError(("drift",), f"{detail}; or give drift_rate")
-    elapsed = times - times[0]
-    return _Curve(depth - found.rate * elapsed, force, found.error * elapsed, kinds), found
+    return _Curve(depth - found.rate * times, force, found.error * times, kinds), found
 
 
 def _branch(curve: _Curve, segment: str | None) -> tuple[Array, Array, Array]:

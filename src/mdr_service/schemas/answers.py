@@ -508,7 +508,9 @@ class TableAnswer(Answer):
     segments: list[TableSegment] = left_out(
         "Segments of a curve, by a column that names them, else by the direction of the depth."
     )
-    time: list[float] = left_out("Times of a curve in seconds, if a column has a unit of time.")
+    time: list[float] = left_out(
+        "Times of a curve from its first point in seconds, if a column has a unit of time."
+    )
     drift_rate: float = left_out(
         "Drift of the depth in the last hold at a low force, in the unit of the depths per second."
     )
