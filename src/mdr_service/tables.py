@@ -48,5 +48,5 @@ def _in_time(table: ParsedFile) -> dict[str, Any]:
     if time is None:
         return result
     drift = curve_segments.drift(depth, force, time, kinds)
-    measured = {"drift_rate": drift.rate, "drift_rate_error": drift.error} if drift else {}
+    measured = {"drift_rate": [drift.rate], "drift_rate_error": [drift.error]} if drift else {}
     return result | {"time": table.time} | measured

@@ -34,7 +34,7 @@ export async function readTable(content, kind, chosen) {
   const units = answer.units.map((unit, i) => (offered(unit, i) ? unit : Object.keys(kind.units[i])[0]));
   const { lines, segments, columns, time: times } = answer;
   const scale = offered(answer.units[0], 0) ? 1 : answer.scales[0];
-  const drift = answer.drift_rate === undefined ? undefined : [answer.drift_rate, answer.drift_rate_error].map((x) => x * scale);
+  const drift = answer.drift_rate && [...answer.drift_rate, ...answer.drift_rate_error].map((x) => x * scale);
   return {
     r, f, units, lines, segments, times, drift, ofAreas: columns.some(({ quantity }) => quantity === "area"),
     columns: columns.map(({ name, unit }, i) => [String(i + 1), unit ? `${name} [${unit}]` : name]),

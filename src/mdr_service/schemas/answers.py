@@ -511,10 +511,11 @@ class TableAnswer(Answer):
     time: list[float] = left_out(
         "Times of a curve from its first point in seconds, if a column has a unit of time."
     )
-    drift_rate: float = left_out(
-        "Drift of the depth in the last hold at a low force, in the unit of the depths per second."
+    drift_rate: list[float] = left_out(
+        "Drift of the depth in the last hold at a low force, in the unit of the depths per second, "
+        "in a list of one entry."
     )
-    drift_rate_error: float = left_out("Its standard error.")
+    drift_rate_error: list[float] = left_out("Its standard error.")
 
 
 class ProblemError(Answer):

@@ -54,7 +54,10 @@ class FitQuery(Query):
         "default all points."
     )
     time: list[Signed] = quantity(
-        "time", "Times of the points, which do not fall, from that at which the drift is 0", default=None, **_CURVE
+        "time",
+        "Times of the points, which do not fall, from that at which the drift is 0",
+        default=None,
+        **_CURVE,
     )
     drift: Literal["hold"] = left_out(
         "`hold` to subtract the drift of the depths in the last hold at a constant low force."
