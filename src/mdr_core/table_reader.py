@@ -186,13 +186,9 @@ def _in_units(
         if not (known := known or heading):
             detail = f"is required: no heading names the unit of {HEADS[wanted]}"
             raise InputError(member, detail)
-        lists.append(np.array(_scaled(values, known[2] / target)))
+        # The product of a decimal number and a power of ten, without its rounding error.
+        lists.append(np.array([float(f"{each * (known[2] / target):.15g}") for each in values]))
     return lists
-
-
-def _scaled(values: Sequence[float], scale: float) -> list[float]:
-    """Return products of decimal numbers and a power of ten, without their rounding errors."""
-    return [float(f"{each * scale:.15g}") for each in values]
 
 
 def _decoded(content: bytes) -> str:
@@ -350,4 +346,4 @@ def _time(rows: Sequence[_Row], titles: list[Title], numeric: list[int]) -> list
         return None
     times = _column(rows, place)
     rises = np.isfinite(times).all() and np.all(np.diff(times) >= 0)
-    return _scaled((times - times[0]).tolist(), unit[2]) if rises else None
+    return ((times - times[0]) * unit[2]).tolist() if rises else None

@@ -61,15 +61,15 @@ def test_slow_approach_and_crest_are_no_holds() -> None:
 def indented(random: np.random.Generator, rate: float) -> dict[str, Array]:
     """Return a curve of E* = 1 and a ball of radius 1 with a hold at 10 % of the force, in time.
 
-    The depths drift at the rate from the first point on; the forces have errors of 0.1 %.
+    The depths drift at the rate from time 0 on; the forces have errors of 0.1 %.
     """
     low = 0.1 ** (2 / 3)
     parts = [np.linspace(-0.2, 1, 80), np.ones(20), np.linspace(1, low, 60), np.full(40, low)]
     depth = np.concatenate([*parts, np.linspace(low, -0.1, 30)])
     force = 4 / 3 * np.maximum(depth, 0) ** 1.5
-    time = np.arange(5.0, 5.0 + depth.size)
+    time = np.arange(float(depth.size))
     return {
-        "indentation_depth": depth + rate * (time - 5) + 1e-4 * random.standard_normal(depth.size),
+        "indentation_depth": depth + rate * time + 1e-4 * random.standard_normal(depth.size),
         "normal_force": force + 1e-3 * random.standard_normal(depth.size),
         "time": time,
     }

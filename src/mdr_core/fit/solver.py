@@ -31,8 +31,8 @@ from mdr_core.validation import (
     single,
 )
 
-SEGMENTS: Final = "loading", "unloading"
-"""Branches of a curve, by the direction of the depth."""
+# Branches of a curve that are fitted.
+_SEGMENTS: Final = "loading", "unloading"
 
 
 class _Curve(NamedTuple):
@@ -230,8 +230,8 @@ def _branch(curve: _Curve, segment: str | None) -> tuple[Array, Array, Array]:
     """Return depths, forces and the effect of the drift of a branch, or an InputError."""
     depth, force, drifted, kinds = curve
     if segment is not None:
-        if segment not in SEGMENTS:
-            raise InputError(("segment",), f"must be one of {', '.join(SEGMENTS)}")
+        if segment not in _SEGMENTS:
+            raise InputError(("segment",), f"must be one of {', '.join(_SEGMENTS)}")
         used = kinds == segment
         if np.sum(used) < 2:
             raise InputError(("segment",), f"is not in the curve: there is no {segment}")
