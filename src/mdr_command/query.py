@@ -41,7 +41,8 @@ _STANDARD_INPUT: Final = "-"
 _PARAMETERS: Final = PARAMETERS | {"fit": parameters_of(FitQuery)}
 # Options that are not numbers.
 _TEXTS: Final = frozenset(
-    {"kind", "scale", "answers", "quantities", "held_1", "held_2", "fit", "segment", "layer_base"}
+    {"kind", "scale", "answers", "quantities", "held_1", "held_2", "fit", "segment", "drift"}
+    | {"layer_base"}
 )
 # Heights between which an area function describes a tip.
 _HEIGHTS: Final = ("largest_height", "lowest_height")
@@ -186,14 +187,14 @@ def _content(arguments: argparse.Namespace) -> bytes:
 
 
 def _curve(arguments: argparse.Namespace) -> dict[str, object]:
-    """Return the depths and forces of the curve in a file, in metres and newtons."""
+    """Return the lists of the curve in a file, in metres, newtons and seconds."""
     if not arguments.file:
         raise InputError((), "a fit by options needs the file of its curve: mdr fit curve.csv")
     units = (arguments.curve_units or ",").split(",")
     if len(units) != len(CURVE):
         raise InputError(("curve_units",), "gives the units of depth and force, such as nm,uN")
     curve = read_curve(arguments.file, [unit or None for unit in units])
-    return {name: values.tolist() for name, values in curve._asdict().items()}
+    return {name: values.tolist() for name, values in curve._asdict().items() if values is not None}
 
 
 def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object]:

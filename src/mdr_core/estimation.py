@@ -88,6 +88,10 @@ class Precision:
         """Correlation of the parameters, shape (n, n) [1]."""
         return np.asarray(self.unit_rows @ self.unit_rows.T)
 
+    def changes(self, curve: Array) -> Array:
+        """Return the changes of the parameters with a change of the curve, to first order."""
+        return np.asarray(self.inverse @ (self.q.T @ curve) / self.scale)
+
     def error(self, relative: float, residual: Array, curve: Array) -> float:
         """Return a bound on the numerical error of the parameters, over their sizes [1].
 

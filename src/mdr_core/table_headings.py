@@ -17,11 +17,15 @@ _WORDS: Final = json.loads(files("mdr_core").joinpath("table_words.json").read_t
 _PREFIXES, _UNITS = _WORDS["prefixes"], _WORDS["units"]
 # Names of each quantity, and words beside a name that leave its meaning.
 _NAMES, _NEUTRAL = _WORDS["names"], frozenset(_WORDS["neutral"])
+# Words of each kind of segment; of several the first kind is meant, as in "hold at peak load".
+_SEGMENTS: Final = {kind: frozenset(words) for kind, words in _WORDS["segments"].items()}
 UNITS: Final = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "nm": 1e-9}
 """Units of length of results, in metres."""
 PROFILE, CURVE = ("radius", "height"), ("depth", "force")
 HEADS: Final = {"radius": "r", "height": "f", "depth": "d", "force": "F"}
-MEASURES: Final = dict.fromkeys(HEADS, "length") | {"force": "force", "area": "area"}
+MEASURES: Final = dict.fromkeys(HEADS, "length") | {
+    each: each for each in ("force", "area", "time")
+}
 # What is left in a name of a factor or a unit that is not understood.
 _MULTIPLIER: Final = (
     r"/ ?\S|10 ?\^|[x×*] ?10|1e[-+]?\d|(?i:(?<![a-z])(nano|micro|milli|kilo)(?![a-z]))"
@@ -145,7 +149,7 @@ def _rank(title: Title, quantity: str) -> int | None:
     for name in ("".join(re.split(r"[\W\d_]+", title.name.lower())), *words[: len(words) == 1]):
         if name in order:
             return order.index(name)
-    return len(order) if measure and quantity in CURVE else None
+    return len(order) if measure and quantity not in PROFILE else None
 
 
 def places_of(
@@ -173,6 +177,33 @@ def places_of(
         detail = f"{len(titles)} columns; name {asked} in a line above, as {form}"
         raise ColumnsError(line, detail, names)
     return places
+
+
+def time_of(titles: Sequence[Title], numeric: Sequence[int]) -> int | None:
+    """Return the index of the column of time, if there is one with a unit."""
+    ranks = [(_rank(titles[i], "time"), i) for i in numeric if titles[i].unit]
+    return min(((rank, i) for rank, i in ranks if rank is not None), default=(0, None))[1]
+
+
+def segments_of(rows: Sequence[Sequence[str]], numeric: Sequence[int]) -> list[str] | None:
+    """Return the kind of segment of each row by the first column that holds nothing else.
+
+    Empty cells continue the segment above.
+    """
+    for i in sorted(set(range(len(rows[0]))) - set(numeric)):
+        cells = [row[i] if i < len(row) else "" for row in rows]
+        known = {cell: _segment_of(cell) for cell in {*cells} - {""}}
+        # A column of one word is no column of segments.
+        if None not in (kinds := set(known.values())) and len(kinds) > 1 and cells[0]:
+            for row in range(1, len(cells)):
+                cells[row] = cells[row] or cells[row - 1]
+            return [str(known[cell]) for cell in cells]
+    return None
+
+
+def _segment_of(cell: str) -> str | None:
+    words = set(re.split(r"[\W\d_]+", cell.lower()))
+    return next((kind for kind, known in _SEGMENTS.items() if words & known), None)
 
 
 def unit_of(text: str) -> tuple[str, str, float] | None:

@@ -20,6 +20,8 @@ from mdr_core.table_headings import (
     known_units,
     places_of,
     refuse,
+    segments_of,
+    time_of,
     titles_of,
     unit_of,
 )
@@ -73,6 +75,8 @@ class MeasuredCurve(NamedTuple):
     """Depths in the order of the file [length]."""
     normal_force: Array
     """Forces [force]."""
+    time: Array | None = None
+    """Times from the first point [s], None without a column of them."""
 
 
 class ParsedFile(NamedTuple):
@@ -85,6 +89,10 @@ class ParsedFile(NamedTuple):
     """Numbers as written, of an area r = (A/pi)^(1/2)."""
     lines: list[int]
     """Line of each point."""
+    time: list[float] | None = None
+    """Times of a curve from its first point [s], if a column has their unit and does not fall."""
+    segments: list[str] | None = None
+    """Kind of the segment of each point of a curve, if a column tells it."""
 
 
 def read_table(
@@ -118,7 +126,8 @@ def read_table(
     Points(r=array([0.    , 0.0001, 0.0002]), f=array([0.e+00, 5.e-07, 2.e-06]))
     """
     given = (length_unit, length_unit) if isinstance(length_unit, str) else length_unit
-    return Points(*_in_units(file, PROFILE, given or (None, None), (metres(to), metres(to))))
+    table = _parsed(file, PROFILE)
+    return Points(*_in_units(table, PROFILE, given or (None, None), (metres(to), metres(to))))
 
 
 def read_curve(file: str | Path, units: Sequence[str | None] = (None, None)) -> MeasuredCurve:
@@ -142,7 +151,10 @@ def read_curve(file: str | Path, units: Sequence[str | None] = (None, None)) -> 
     ...     read_curve(file).normal_force
     array([0.e+00, 2.e-06, 5.e-06])
     """
-    return MeasuredCurve(*_in_units(file, CURVE, units, (1.0, 1.0)))
+    table = _parsed(file, CURVE)
+    time = None if table.time is None else np.array(table.time)
+    depth, force = _in_units(table, CURVE, units, (1.0, 1.0))
+    return MeasuredCurve(depth, force, time)
 
 
 def metres(name: str) -> float:
@@ -153,12 +165,15 @@ def metres(name: str) -> float:
     raise InputError(("length_unit",), f"{name} is none of {', '.join(UNITS)}")
 
 
-def _in_units(
-    file: str | Path, kind: Sequence[str], given: Sequence[str | None], to: Sequence[float]
-) -> list[Array]:
+def _parsed(file: str | Path, kind: Sequence[str]) -> ParsedFile:
     require_type("file", file, str | Path, "the name of a file")
     with Path(file).open("rb") as stream:
-        table = parse(stream.read(_LARGEST + 1), kind)
+        return parse(stream.read(_LARGEST + 1), kind)
+
+
+def _in_units(
+    table: ParsedFile, kind: Sequence[str], given: Sequence[str | None], to: Sequence[float]
+) -> list[Array]:
     member, lists = ("length_unit" if kind == PROFILE else "units",), []
     columns = zip(table.taken.items(), table.values, given, to, kind, strict=True)
     for (place, _), values, unit, target, wanted in columns:
@@ -296,8 +311,7 @@ def _table(
         if title.unknown or (title.unit and title.unit[0] != MEASURES[quantity]):
             unknown = title.unknown or f"the unit {(title.unit or kind)[1]}"
             raise refuse(title.line, f"{unknown} is none of {known_units(quantity)}")
-        column = " ".join(row[i] for _, row in rows).translate(_DECIMAL)
-        numbers = np.array([float(each) for each in column.split()])
+        numbers = _column(rows, i)
         for bad, detail in (
             (~np.isfinite(numbers), "a number is too large"),
             (numbers < (0 if is_area else -np.inf), "an area is negative"),
@@ -313,4 +327,23 @@ def _table(
                 "in a line above, as r [mm];f [µm] for a profile or h [nm];A [nm²] for areas"
             )
             raise refuse(first, detail)
-    return ParsedFile(titles, taken, values, [line for line, _ in rows])
+    table = ParsedFile(titles, taken, values, [line for line, _ in rows])
+    if kind == PROFILE:
+        return table
+    others = [i for i in numeric if i not in taken]
+    segments = segments_of([cells for _, cells in rows], numeric)
+    return table._replace(time=_time(rows, titles, others), segments=segments)
+
+
+def _column(rows: Sequence[_Row], i: int) -> Array:
+    column = " ".join(row[i] for _, row in rows).translate(_DECIMAL)
+    return np.array([float(each) for each in column.split()])
+
+
+def _time(rows: Sequence[_Row], titles: list[Title], numeric: list[int]) -> list[float] | None:
+    place = time_of(titles, numeric)
+    if place is None or not (unit := titles[place].unit):
+        return None
+    times = _column(rows, place)
+    rises = np.isfinite(times).all() and np.all(np.diff(times) >= 0)
+    return ((times - times[0]) * unit[2]).tolist() if rises else None

@@ -71,6 +71,7 @@ _WORDS: Final[Mapping[str, Any]] = {
     "profile.kind": Literal[OF_NUMBERS],
     "fit": str | None,
     "segment": Literal["loading", "unloading"] | None,
+    "drift": Literal["hold"] | None,
     **dict.fromkeys(("material.layer.base", "layer.base"), materials.Base | None),
 }
 # Groups whose parameters carry their name.

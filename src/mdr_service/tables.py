@@ -4,9 +4,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from mdr_core import residuals
+from mdr_core import curve_segments
 from mdr_core.table_headings import CURVE, PROFILE
-from mdr_core.table_reader import parse
+from mdr_core.table_reader import ParsedFile, parse
 from mdr_service.serializers import write_json
 
 KINDS: Final = {"profile": PROFILE, "curve": CURVE}
@@ -33,15 +33,20 @@ def read(content: bytes, kind: str, columns: list[int] | None) -> bytes:
         ],
     }
     if kind == "curve":
-        result["segments"] = _segments(np.array(table.values[0]))
+        result |= _in_time(table)
     return write_json(result)
 
 
-def _segments(depth: np.ndarray) -> list[dict[str, Any]]:
-    """Return the branches between the turning points of the depth."""
-    signs = residuals.directions(depth)
-    begins = [0, *(np.flatnonzero(np.diff(signs)) + 1).tolist()]
-    return [
-        {"kind": "loading" if signs[begin] > 0 else "unloading", "first": begin, "last": end - 1}
-        for begin, end in zip(begins, [*begins[1:], depth.size], strict=True)
-    ]
+def _in_time(table: ParsedFile) -> dict[str, Any]:
+    """Return the times and segments of a curve, and the drift that a hold shows."""
+    depth, force = map(np.array, table.values)
+    time = None if table.time is None else np.array(table.time)
+    kinds = np.array(table.segments or curve_segments.phases(depth, force, time))
+    result: dict[str, Any] = {
+        "segments": [each._asdict() for each in curve_segments.segments(kinds)]
+    }
+    if time is None:
+        return result
+    drift = curve_segments.drift(depth, force, time, kinds)
+    measured = {"drift_rate": [drift.rate], "drift_rate_error": [drift.error]} if drift else {}
+    return result | {"time": table.time} | measured

@@ -86,6 +86,17 @@ def test_errors_name_the_curve_or_the_option(
     assert message in capsys.readouterr().err
 
 
+def test_times_of_a_curve_are_those_of_its_drift(tmp_path: Path) -> None:
+    curve, result = tmp_path / "curve.csv", tmp_path / "fit.json"
+    rows = "".join(f"{i / 60:.9f};{11 * i - 10};{force}\n" for i, force in enumerate(FORCES))
+    curve.write_text("t [min];d [nm];F [µN]\n" + rows, "utf-8")
+    options = [*FIT_OPTIONS, "--drift-rate", "1e-9", "--drift-rate-error", "1e-11"]
+    assert main(["fit", str(curve), *options, "-o", str(result)]) == 0
+    document = json.loads(result.read_text("utf-8"))
+    assert document["drift_rate"] == [1e-9]
+    assert document["indentation_depth"] == pytest.approx(FIT["indentation_depth"], abs=1e-15)
+
+
 def test_a_fit_by_options_needs_its_curve(capsys: Capture) -> None:
     assert main(["fit", *FIT_OPTIONS]) == 2
     assert "needs the file of its curve" in capsys.readouterr().err

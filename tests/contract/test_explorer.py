@@ -407,6 +407,38 @@ def test_columns_segment_and_depths_of_a_curve_are_chosen(visit: Visit, tmp_path
     assert json.loads(request(visit, "Fit"))["indentation_depth"] == sent
 
 
+def test_drift_of_a_hold_is_subtracted_on_request(visit: Visit, tmp_path: Path) -> None:
+    visit.open("?tab=fit&e1=rigid&nu2=0.5&fitted=contact_point")
+    # Loading to 20 µm, a hold, unloading to 6 µm, a hold and the rest, with a drift of 20 nm/s.
+    parts = [np.linspace(-5e-6, 2e-5, 51), np.full(20, 2e-5), np.linspace(2e-5, 6e-6, 40)]
+    depths = np.concatenate([*parts, np.full(40, 6e-6), np.linspace(6e-6, -5e-6, 30)])
+    forces = hertz(depths, 2e6, 0.0)
+    rows = [
+        f"{i};{1e6 * d + 0.02 * i:.9f};{1e3 * f:.9f}"
+        for i, (d, f) in enumerate(zip(depths, forces, strict=True))
+    ]
+    file = tmp_path / "curve.csv"
+    file.write_text("\n".join(["t [s];d [µm];F [mN]", *rows]), "utf-8")
+    with visit.changing():
+        visit.page.set_input_files("#curve-file", file)
+    segments = visit.page.locator("#field-rows option").all_inner_texts()
+    kinds = ["all points", "loading", "hold", "unloading", "hold", "unloading"]
+    assert [each.split(",")[0] for each in segments] == kinds
+    with visit.changing():
+        visit.page.select_option("#field-rows", index=1)
+    assert not visit.number("Effective modulus E*").startswith("2.0000")
+    with visit.changing():
+        visit.page.select_option("#field-drift", index=1)
+    modulus = visit.number("Effective modulus E*").split()
+    assert float(modulus[0]) == pytest.approx(2, rel=1e-4, abs=0)
+    assert visit.number("Drift").startswith("20 ±")
+    sent = json.loads(request(visit, "Fit"))
+    assert sent["drift_rate"] == pytest.approx(2e-8, rel=1e-4, abs=0)
+    # A link keeps the times and the rate.
+    visit.open(visit.page.url.removeprefix(visit.address))
+    assert json.loads(request(visit, "Fit")) == sent
+
+
 def mindlin_loop(rig: float, part: float = 1.5) -> tuple[np.ndarray, np.ndarray]:
     """Return a loop of a ball of 10 mm under 10 N, for E* = 2 GPa, G* = 1.6 GPa and mu = 0.3.
 

@@ -34,7 +34,7 @@ def test_forged_addresses_yield_offered_words_and_finite_numbers() -> None:
         assert "error" not in result, address
         table, curve = (result["inputs"].pop(name) for name in ("table", "curve"))
         assert path.fullmatch(result["inputs"].pop("path")), address
-        for name in ("breaks", "loads", "rows"):
+        for name in ("breaks", "loads", "rows", "drift"):
             assert numbers.fullmatch(result["inputs"].pop(name, "")), address
         for optional in (
             "uncertainty",

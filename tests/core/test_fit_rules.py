@@ -188,6 +188,19 @@ def test_curve_before_contact_with_a_layer_is_refused() -> None:
         )
 
 
+@pytest.mark.parametrize("shape", [mdr.FlatPunch(1.0), mdr.TruncatedCone(1.0, 0.5)])
+def test_flat_face_that_is_too_large_for_a_layer_is_refused(shape: mdr.Profile) -> None:
+    depth = np.linspace(0, 1e-9, 20)
+    with pytest.raises(mdr.InputError, match="radius of the flat face over 10"):
+        fit.solve(
+            shape,
+            indentation_depth=depth,
+            normal_force=depth,
+            fit=["e_star"],
+            layer=mdr.Layer(thickness=1e-9, base="frictionless"),
+        )
+
+
 @pytest.mark.long
 def test_intervals_cover_all_parameters_without_adhesion() -> None:
     random, covered, curves = np.random.default_rng(111), [], 100

@@ -23,6 +23,7 @@ from mdr_core import (
     RoundedPunch,
     Series,
     Sphere,
+    Tabulated,
     TruncatedCone,
     fields,
     fit,
@@ -322,3 +323,13 @@ def test_strain_and_radial_error_on_a_thin_incompressible_layer() -> None:
     assert contact.warnings == ()
     deep = layer.solve(Paraboloid(1.0), _material(1, BONDED, 0.5), indentation_depth=0.2)
     assert "layer_strain" in {notice.code for notice in deep.warnings}
+
+
+def test_table_at_zero_load_on_a_layer_has_no_invalid_numbers() -> None:
+    r = np.linspace(0, 1, 41)
+    contact = layer.solve(
+        Tabulated(r, r * r / 2), _material(1, BONDED, 0.3), indentation_depth=[0.0, 0.01]
+    )
+    # NumPy reports 0/0 as a warning, which is an error in tests.
+    assert contact.warnings
+    assert contact.normal_force[0] == 0

@@ -367,3 +367,32 @@ def test_file_of_four_megabytes_takes_linear_time() -> None:
         return process_time() - begin
 
     assert seconds(150_000) < 30 * min(seconds(15_000) for _ in range(3))
+
+
+@pytest.mark.parametrize(
+    ("heading", "unit"),
+    [("Time [s]", 1.0), ("t (ms)", 1e-3), ("Zeit [min]", 60.0), ("Temps/s", 1.0), ("Temps", None)],
+)
+def test_times_are_in_seconds_and_need_a_unit(heading: str, unit: float | None) -> None:
+    rows = "".join(f"{i};{i};{2 * i}\n" for i in range(3))
+    table = parse(f"{heading};d [nm];F [mN]\n{rows}".encode(), CURVE)
+    assert table.time == (None if unit is None else [0.0, unit, 2 * unit])
+    falling = f"{heading};d [nm];F [mN]\n{rows}{rows}"
+    assert parse(falling.encode(), CURVE).time is None
+
+
+@pytest.mark.parametrize(
+    ("cells", "kinds"),
+    [
+        (["Load", "Hold", "Unload"], ["loading", "hold", "unloading"]),
+        (["Load Segment", "Peak Hold", ""], ["loading", "hold", "hold"]),
+        (["Belasten", "Halten", "Entlasten"], ["loading", "hold", "unloading"]),
+        (["charge", "maintien", "décharge"], ["loading", "hold", "unloading"]),
+        (["extend", "pause", "retract"], ["loading", "hold", "unloading"]),
+        (["Load", "Load", "Load"], None),
+        (["Load", "?", "Unload"], None),
+    ],
+)
+def test_column_of_segments_names_their_kinds(cells: list[str], kinds: list[str] | None) -> None:
+    rows = "".join(f"{i};{2 * i};{cell}\n" for i, cell in enumerate(cells))
+    assert parse(f"d [nm];F [mN];Part\n{rows}".encode(), CURVE).segments == kinds

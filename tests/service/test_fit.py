@@ -69,6 +69,24 @@ def test_segment_of_a_curve_with_two_branches(client: Client) -> None:
         assert "two_branches" not in [each["code"] for each in document["warnings"]]
 
 
+def test_drift_is_subtracted(client: Client) -> None:
+    d = [i / 20 for i in range(21)]
+    curve = {
+        "profile": {"kind": "paraboloid", "radius": 1.0},
+        "indentation_depth": [x + 1e-3 * i for i, x in enumerate(d)],
+        "normal_force": [x**1.5 for x in d],
+        "time": [float(i) for i in range(21)],
+    }
+    asked = curve | {"drift_rate": 1e-3, "drift_rate_error": 1e-5}
+    document = client.post(PATH, asked).json()
+    FitAnswer.model_validate(document)
+    assert document["e_star"] == pytest.approx([0.75], rel=1e-9, abs=0)
+    assert (document["drift_rate"], document["drift_rate_error"]) == ([1e-3], [1e-5])
+    assert document["indentation_depth"] == pytest.approx(d, abs=1e-12)
+    refused = client.post(PATH, curve | {"drift": "hold"})
+    assert refused.json()["errors"][0]["pointer"] == "/drift"
+
+
 def test_thickness_of_the_body(client: Client) -> None:
     body = {"body_thickness": 2000.0}
     known = {"fit": ["contact_point"], "material": {"e_star": 2e-5} | body}

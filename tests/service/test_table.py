@@ -74,3 +74,30 @@ def test_refusals_point_and_name_the_remedy(
 
 def test_file_that_is_too_long_is_refused(client: Client) -> None:
     assert read(client, b"0 0\n" * 1_100_000)[0] == 413
+
+
+def test_holds_times_and_their_drift_are_listed(client: Client) -> None:
+    # Loading to 100, a hold, unloading to 20, a hold in which the depth drifts by 0.6 nm/min.
+    forces = [*range(0, 100, 2), *[100] * 20, *range(98, 20, -2), *[20] * 30, *range(18, -2, -2)]
+    rows = "".join(f"{i / 60:.9f};{f + 0.01 * i:.2f};{f}\n" for i, f in enumerate(forces))
+    status, document = read(client, f"t [min];d [nm];F [mN]\n{rows}")
+    assert status == 200
+    TableAnswer.model_validate(document)
+    assert document["time"] == pytest.approx(list(range(len(forces))), abs=1e-6)
+    assert [each["kind"] for each in document["segments"]] == [
+        *("loading", "hold", "unloading", "hold", "unloading")
+    ]
+    second = document["segments"][3]
+    assert [second["first"], second["last"]] == pytest.approx([109, 138], abs=1)
+    assert document["drift_rate"] == pytest.approx([0.01], rel=1e-6, abs=0)
+    assert 0 < document["drift_rate_error"][0] < 1e-6
+
+
+def test_segments_of_a_file_go_before_those_of_the_depth(client: Client) -> None:
+    text = "d [nm];F [mN];Segment\n0;0;Load\n1;1;Load\n2;2;Hold\n2;1;\n1;0;Unload\n"
+    _, document = read(client, text)
+    assert document["segments"] == [
+        {"kind": "loading", "first": 0, "last": 1},
+        {"kind": "hold", "first": 2, "last": 3},
+        {"kind": "unloading", "first": 4, "last": 4},
+    ]

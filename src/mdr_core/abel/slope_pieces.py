@@ -211,6 +211,8 @@ class SlopePieces:
         low, width : inner radius and width, as accurate as it is narrow [length].
         kernels : K of each integral.
         """
+        if width == 0:
+            return [0.0] * len(kernels)
         left, length = _pieces(self.edges, low, low + width, width)
         distance = np.maximum(width - (left - low) - length, 0.0)
         x, root, weight = near_rule(np.array([low + width]), distance, length, -1)

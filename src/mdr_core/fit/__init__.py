@@ -2,6 +2,6 @@
 
 from mdr_core.fit.model import PARAMETERS
 from mdr_core.fit.result import Fit
-from mdr_core.fit.solver import SEGMENTS, solve
+from mdr_core.fit.solver import solve
 
-__all__ = ["PARAMETERS", "SEGMENTS", "Fit", "solve"]
+__all__ = ["PARAMETERS", "Fit", "solve"]

@@ -98,13 +98,19 @@ def _touching(curve: Model) -> tuple[Model, Parameters]:
     it open in noise, as offset, adhesion and contact point compensate.
     """
     order = np.argsort(curve.depth, kind="stable")
-    depth, force = curve.depth[order], curve.force[order]
+    depth, force, drifted = (each[order] for each in (curve.depth, curve.force, curve.drifted))
     least = int(np.argmin(force)) + 1
     curve.require_points(depth.size - least)
 
     def with_detached(count: int) -> Model:
         used = np.r_[:count, least : depth.size]
-        return replace(curve, depth=depth[used], force=force[used], touches=used >= count)
+        return replace(
+            curve,
+            depth=depth[used],
+            force=force[used],
+            drifted=drifted[used],
+            touches=used >= count,
+        )
 
     jump = int(np.argmin(np.diff(force[:least]))) + 1 if least > 1 else 0
     touching = with_detached(0)

@@ -55,6 +55,8 @@ class Model:
     noise: float | None
     """Known standard deviation of the forces [force]."""
     body_thickness: float | None
+    drifted: Array
+    """Changes of the depths with the rate of drift, by its standard error [length]."""
 
     @property
     def free(self) -> int:

@@ -3,7 +3,7 @@
 Source: notes, §15.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Final
 
 import numpy as np
@@ -57,10 +57,14 @@ class Fit(LeastSquaresFit):
     """E of the sample [pressure], None without its Poisson's ratio."""
     youngs_modulus_error: float | None = None
     """Standard deviation of E by that of E* [pressure]."""
+    drift_rate: float | None = None
+    """Drift of the depths that is subtracted [length/time], None without one."""
+    drift_rate_error: float | None = None
+    """Its standard deviation, which those of the parameters contain [length/time]."""
     quantities: ClassVar[tuple[str, ...]] = (
         *("fit", "e_star", "contact_point", "force_offset", "work_of_adhesion"),
         *("standard_errors", "correlation", "noise", "misfit"),
-        *("youngs_modulus", "youngs_modulus_error"),
+        *("youngs_modulus", "youngs_modulus_error", "drift_rate", "drift_rate_error"),
         *("indentation_depth", "normal_force", "residual"),
     )
     g_star: ClassVar[None] = None
@@ -89,6 +93,7 @@ def result(model: Model, found: Parameters) -> Fit:
     contact = _deepest(model, found)
     interpolated = 0.0 if model.on_layer is None else model.on_layer.error
     code, misfit = _misfit(model, precision.q, residual)
+    errors, correlation = _errors(model, found, precision, model.noise or scatter)
     return Fit(
         fit=model.fit,
         normal=contact,
@@ -97,8 +102,8 @@ def result(model: Model, found: Parameters) -> Fit:
         contact_point=found["contact_point"],
         force_offset=found["force_offset"],
         work_of_adhesion=found["work_of_adhesion"],
-        standard_errors=(model.noise or scatter) * precision.deviations,
-        correlation=precision.correlation,
+        standard_errors=errors,
+        correlation=correlation,
         residual=residual,
         noise=model.noise or scatter,
         misfit=misfit,
@@ -109,6 +114,22 @@ def result(model: Model, found: Parameters) -> Fit:
             *_decided_by_one(model, precision),
         ),
     )
+
+
+def _errors(
+    model: Model, found: Parameters, precision: Precision, noise: float
+) -> tuple[Array, Array]:
+    """Return the standard deviations and the correlation by noise, and by the rate of a drift."""
+    errors, correlation = noise * precision.deviations, precision.correlation
+    if not model.drifted.any():
+        return errors, correlation
+    _, by_place = replace(model, fit=("contact_point",)).at(found)
+    by_drift = precision.changes(by_place[:, 0] * model.drifted)
+    both = np.hypot(errors, by_drift)
+    shares = np.outer(errors / both, errors / both), np.outer(by_drift / both, by_drift / both)
+    correlation = correlation * shares[0] + shares[1]
+    np.fill_diagonal(correlation, 1.0)
+    return both, correlation
 
 
 def _deepest(model: Model, found: Parameters) -> NormalContact:

@@ -5,29 +5,45 @@ Source: notes, §15.
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Final, Literal
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from mdr_core import residuals
+from mdr_core import curve_segments
+from mdr_core.curve_segments import Drift, phases
 from mdr_core.errors import InputError
 from mdr_core.fit import adhesive
 from mdr_core.fit.model import PARAMETERS, Model
 from mdr_core.fit.result import Fit, result
 from mdr_core.layer import DepthCurve
+from mdr_core.layer.equation import LARGEST
 from mdr_core.materials import RIGID, Body, Layer, from_bodies
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 from mdr_core.validation import (
     as_curve,
+    require_finite,
+    require_not_negative,
     require_poissons_ratio,
     require_single_positive,
     require_type,
+    single,
 )
 
-SEGMENTS: Final = {"loading": 1, "unloading": -1}
-"""Branches of a curve, and the direction of the depth on each."""
+# Branches of a curve that are fitted.
+_SEGMENTS: Final = "loading", "unloading"
+
+
+class _Curve(NamedTuple):
+    """Measured curve, without its drift."""
+
+    depth: Array
+    force: Array
+    drifted: Array
+    """Change of the depths by the standard error of the drift [length]."""
+    kinds: NDArray[np.str_]
+    """See `phases`."""
 
 
 def solve(
@@ -43,6 +59,10 @@ def solve(
     poissons_ratio: float | None = None,
     indenter: Body | Literal["rigid"] = "rigid",
     layer: Layer | None = None,
+    time: ArrayLike | None = None,
+    drift: Literal["hold"] | None = None,
+    drift_rate: float | None = None,
+    drift_rate_error: float | None = None,
 ) -> Fit:
     """Return the parameters of a contact that fit a measured curve best.
 
@@ -60,13 +80,18 @@ def solve(
     e_star : effective modulus, needed unless it is fitted [pressure].
     noise : standard deviation of the forces, by default that of the residuals [force].
     body_thickness : see `from_bodies` [length].
-    segment : "loading" or "unloading", by the direction of the depth in the order of the curve; by
-        default all points.
+    segment : "loading" or "unloading", by the direction of the depth in the order of the curve,
+        without holds; by default all points.
     poissons_ratio : Poisson's ratio of the sample [1], for its Young's modulus
         E = (1 - nu^2)/(1/E* - 1/E_i*).
     indenter : the other body, of E_i*.
     layer : elastic layer that is the sample, with Poisson's ratio on a bonded base; not with
         adhesion.
+    time : times of the points, which do not fall, shape (k,).
+    drift : "hold" to subtract the drift of the depths that the last hold at a constant low force
+        shows, by a line of least squares; rate times time is subtracted.
+    drift_rate, drift_rate_error : drift to subtract in its place [length/time], and its standard
+        deviation, 0 by default.
 
     Returns
     -------
@@ -89,7 +114,12 @@ def solve(
     2e+09 3e-07
     """
     require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
-    depth, force = _curve(indentation_depth, normal_force, segment)
+    curve = as_curve("depths", indentation_depth=indentation_depth, normal_force=normal_force)
+    if np.ptp(curve[0]) == 0:
+        raise InputError(("indentation_depth",), "must hold different depths")
+    known_drift = drift, drift_rate, drift_rate_error
+    corrected, subtracted = _without_drift(curve, time, *known_drift)
+    depth, force, drifted = _branch(corrected, segment)
     unknown = [name for name in fit if name not in PARAMETERS]
     if unknown or not fit or len(set(fit)) < len(fit):
         raise InputError(("fit",), f"must hold some of {', '.join(PARAMETERS)}, each once")
@@ -110,12 +140,15 @@ def solve(
         raise InputError(place, "lies beyond the end of the profile: give a longer one")
     if layer is not None and layer.poissons_ratio is None:
         layer = replace(layer, poissons_ratio=poissons_ratio)
-    curve = None if layer is None else _on_layer(profile, layer, depth, fit, body_thickness)
+    on_layer = None if layer is None else _on_layer(profile, layer, depth, fit, body_thickness)
     touches = np.ones(depth.size, dtype=bool)
-    known = e_star, touches, curve, noise, body_thickness
+    known = e_star, touches, on_layer, noise, body_thickness, drifted
     model = Model(profile, depth, force, tuple(fit), *known)
     is_adhesive = "work_of_adhesion" in fit
     found = adhesive.solve(model) if is_adhesive else result(model, model.best())
+    if subtracted:
+        rate, error = subtracted
+        found = replace(found, drift_rate=rate, drift_rate_error=error)
     return found if poissons_ratio is None else _of_sample(found, poissons_ratio, indenter)
 
 
@@ -131,6 +164,9 @@ def _on_layer(
         raise InputError(("layer",), "cannot be combined with a fitted work_of_adhesion")
     if body_thickness is not None:
         raise InputError(("layer",), "and body_thickness exclude each other: give one of them")
+    if profile.first_radius > LARGEST * layer.thickness:
+        detail = f"must be at least the radius of the flat face over {LARGEST:g}"
+        raise InputError(("layer", "thickness"), detail)
     return DepthCurve.up_to(profile, layer, max(float(depth.max()), 2 * float(np.ptp(depth))))
 
 
@@ -151,22 +187,55 @@ def _of_sample(found: Fit, ratio: float, indenter: Body | Literal["rigid"]) -> F
     )
 
 
-def _curve(
-    indentation_depth: ArrayLike, normal_force: ArrayLike, segment: str | None
-) -> tuple[Array, Array]:
-    """Return depths and forces of a branch, or an InputError."""
-    depth, force = as_curve(
-        "depths", indentation_depth=indentation_depth, normal_force=normal_force
-    )
-    if np.ptp(depth) == 0:
-        raise InputError(("indentation_depth",), "must hold different depths")
+def _without_drift(
+    curve: tuple[Array, Array],
+    time: ArrayLike | None,
+    drift: str | None,
+    rate: float | None,
+    error: float | None,
+) -> tuple[_Curve, Drift | None]:
+    """Return the curve with its phases, and the drift that is subtracted from its depths.
+
+    Parameters: depths and forces, and see `solve`.
+    """
+    depth, force = curve
+    times = None
+    if time is not None:
+        _, times = as_curve("depths", indentation_depth=depth, time=time)
+        if np.any(falls := np.diff(times) < 0):
+            raise InputError(("time", int(falls.argmax()) + 1), "is before the one above")
+    kinds = phases(depth, force, times)
+    if rate is None and error is not None:
+        raise InputError(("drift_rate_error",), "is that of a drift_rate: give both")
+    if rate is None and drift is None:
+        return _Curve(depth, force, np.zeros(depth.size), kinds), None
+    if times is None:
+        raise InputError(("time",), "times of the points are needed for the drift")
+    found = None
+    if rate is not None:
+        if drift is not None:
+            raise InputError(("drift_rate",), "and drift exclude each other: give one of them")
+        found = Drift(single(("drift_rate",), rate), single(("drift_rate_error",), error or 0.0))
+        require_finite(("drift_rate",), np.asarray(found.rate))
+        require_not_negative(("drift_rate_error",), np.asarray(found.error))
+    elif drift == "hold":
+        found = curve_segments.drift(depth, force, times, kinds)
+    if found is None:
+        detail = "must be hold, of a curve with one at a constant force below half of the largest"
+        raise InputError(("drift",), f"{detail}; or give drift_rate")
+    return _Curve(depth - found.rate * times, force, found.error * times, kinds), found
+
+
+def _branch(curve: _Curve, segment: str | None) -> tuple[Array, Array, Array]:
+    """Return depths, forces and the effect of the drift of a branch, or an InputError."""
+    depth, force, drifted, kinds = curve
     if segment is not None:
-        if segment not in SEGMENTS:
-            raise InputError(("segment",), f"must be one of {', '.join(SEGMENTS)}")
-        used = residuals.directions(depth) == SEGMENTS[segment]
+        if segment not in _SEGMENTS:
+            raise InputError(("segment",), f"must be one of {', '.join(_SEGMENTS)}")
+        used = kinds == segment
         if np.sum(used) < 2:
             raise InputError(("segment",), f"is not in the curve: there is no {segment}")
-        depth, force = depth[used], force[used]
+        depth, force, drifted = depth[used], force[used], drifted[used]
     # The force falls to a pull-off too, whose least force is farther from most forces than the
     # largest one.
     height, order = force - np.median(force), np.argsort(depth, kind="stable")
@@ -177,4 +246,4 @@ def _curve(
             "the largest force lies at a small depth: reverse the sign of a separation or height"
         )
         raise InputError(("indentation_depth",), detail)
-    return depth, force
+    return depth, force, drifted

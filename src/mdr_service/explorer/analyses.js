@@ -3,6 +3,7 @@
 import { controls, hasLoop, NORMAL, RIGID, TANGENTIAL } from "./inputs.js";
 import { densityOf, massOf, strengthOf } from "./materials.js";
 import { QUANTITIES } from "./quantities.js";
+import { LENGTHS } from "./table_reader.js";
 import { shown } from "./units.js";
 import { solveStress, solveWear } from "./field_results.js";
 import { solveFit } from "./fit_results.js";
@@ -77,15 +78,18 @@ export const MEASURED = {
 /** Return the fields of a measured curve or loop: which of its points are fitted. */
 export function curveFields(inputs) {
   if (hasLoop(inputs)) return [];
-  const { segments = [] } = inputs.curve;
+  const { segments = [], units: [unit], drift } = inputs.curve;
   const words = (row) => `rows ${row.split(",").map((each) => Number(each) + 1).join(" to ")}`;
   const branches = segments.map(({ kind, first, last }) => [`${first},${last}`, `${kind}, ${words(`${first},${last}`)}`]);
   // A link holds rows without the direction of the depth.
   const own = inputs.rows && !branches.some(([rows]) => rows === inputs.rows) ? [[inputs.rows, words(inputs.rows)]] : [];
+  // In metres per second, with its standard error, as a link holds it.
+  const rate = inputs.drift || drift?.map((each) => each * LENGTHS[unit]).join();
   const end = (key, label, placeholder) => ({ key, label, dimension: "displacement", optional: true, placeholder });
   const choices = [["", "all points"], ...branches, ...own];
   return [
     ...(choices.length > 2 || own.length ? [{ key: "rows", label: "Segment", choices }] : []),
+    ...(rate ? [{ key: "drift", label: "Drift of the hold", choices: [["", "not subtracted"], [rate, "subtracted"]] }] : []),
     end("from", "Depths from", "the first"), end("to", "Depths up to", "the last"),
   ];
 }

@@ -58,16 +58,19 @@ async function solveLoop(inputs, query) {
 
 export async function solveFit(inputs, query) {
   if (hasLoop(inputs)) return solveLoop(inputs, query);
-  const { depths, forces } = inSI(inputs.curve);
-  const { rows, from, to } = inputs;
+  const { depths: measured, forces } = inSI(inputs.curve);
+  const { rows, from, to, curve: { times } } = inputs;
+  const [rate, error] = inputs.drift ? inputs.drift.split(",").map(Number) : [0];
+  const depths = rate ? measured.map((depth, i) => depth - rate * times[i]) : measured;
   const [begin, end] = rows ? rows.split(",").map(Number) : [0, depths.length];
   const isTaken = (depth, i) => i >= begin && i <= end && (from === "" || depth >= from) && (to === "" || depth <= to);
-  const points = depths.map((depth, i) => [depth, forces[i], isTaken(depth, i)]);
-  const columns = (taken) => [0, 1].map((part) => points.filter((point) => point[2] === taken).map((point) => point[part]));
+  const points = depths.map((depth, i) => [depth, forces[i], measured[i], times?.[i], isTaken(depth, i)]);
+  const columns = (taken) => [0, 1, 2, 3].map((part) => points.filter((point) => point[4] === taken).map((point) => point[part]));
   const [taken, others] = [columns(true), columns(false)];
+  const drift = rate ? { time: taken[3], drift_rate: rate, drift_rate_error: error } : {};
   const { profile, material } = basics(inputs);
   const found = await query("Fit", "v1/normal/fit", {
-    profile, indentation_depth: taken[0], normal_force: taken[1],
+    profile, indentation_depth: taken[2], ...drift, normal_force: taken[1],
     fit: ["e_star", ...(inputs.fitted === "none" ? [] : inputs.fitted.split(","))],
     body_thickness: material.body_thickness, poissons_ratio: inputs.nu2, indenter: material.bodies[0],
   });
@@ -82,7 +85,7 @@ export async function solveFit(inputs, query) {
     responses: [found],
     known: {},
     numbers: [
-      modulus, ...sample, ...parameters,
+      modulus, ...sample, ...parameters, ...(rate ? [["Drift", rate, "m/s", error]] : []),
       ...(correlation === undefined ? [] : [["Correlation of E* and contact point", correlation, "1", undefined, 2]]),
       ...qualityOf(found),
     ],

@@ -17,7 +17,7 @@ const DEFAULTS = {
   mu: 0.3, push: "ratio", shear: "none", amount: 0.7,
   normal: "normal_force", tangential: "tangential_force",
   path: "100,0;100,20;100,-20;100,20",
-  measured: "curve", rig: "", rows: "", from: "", to: "", fitted: "contact_point", mass: "", density: "", share: 2 / 7, approach: 0.1, along: 0.05,
+  measured: "curve", rig: "", rows: "", drift: "", from: "", to: "", fitted: "contact_point", mass: "", density: "", share: 2 / 7, approach: 0.1, along: 0.05,
   body: 1, yield1: "", yield2: "", loads: "",
   oscillation: "tangential_force", amplitude: 20, wear: 1e-13, cycles: 1e5,
   ul: "mm", ud: "µm", uf: "N", up: "MPa", um: "GPa",
@@ -40,6 +40,7 @@ const OTHERS = {
   loads: (text) => (text === "" || text.split(",").every(isNumber) ? text : undefined),
   path: (text) => (pathPoints({ path: text }).every(isPoint) ? text : undefined),
   rows: (text) => (/^(\d+,\d+)?$/.test(text) ? text : undefined),
+  drift: (text) => (text === "" || isPoint(text.split(",").map(numberOf)) ? text : undefined),
   breaks: (text) => (text === "" || text.split(",").every(isNumber) ? text : undefined),
   uncertainty: optional, thickness: optional, mass: optional, density: optional, yield1: optional, yield2: optional,
   rig: optional, from: optional, to: optional,
@@ -107,6 +108,16 @@ export function fromAddress(search, hash) {
   for (const [key, kind] of [["table", PROFILE], ["curve", CURVE]]) {
     if (COLUMNS[key].some((name) => fragment.has(name))) set(key, tableOf(fragment, COLUMNS[key], kind));
   }
+  if (inputs.drift) {
+    const times = fragment.get("t")?.split(",").map(numberOf) ?? [];
+    const isWhole = times.length === inputs.curve.r.length && !times.some(Number.isNaN);
+    if (isWhole) {
+      inputs.curve.times = times;
+    } else {
+      inputs.drift = "";
+      unread.push("t");
+    }
+  }
   return { inputs, unread };
 }
 
@@ -126,6 +137,7 @@ export function toAddress(inputs) {
     const { r, f, units } = inputs[key];
     return [r, f, ...units].map((value, i) => member([COLUMNS[key][i], value]));
   });
+  if (inputs.tab === "fit" && inputs.drift) columns.push(member(["t", inputs.curve.times]));
   return columns.length ? `?${query}#${columns.join("&")}` : `?${query}`;
 }
 

@@ -101,7 +101,7 @@ function change(key, value) {
 function takeCurve(curve) {
   unreadable.delete("curve");
   const [ud, uf] = curve.units;
-  show({ ...inputs, curve, rows: "", from: "", to: "", ud, uf });
+  show({ ...inputs, curve, rows: "", drift: "", from: "", to: "", ud, uf });
 }
 
 function fail(key) {

@@ -137,8 +137,13 @@ export function tableField(root, kind, { change, fail }) {
     });
   });
   text.addEventListener("input", () => read());
-  part(".reverse").addEventListener("click", () =>
-    shown && rewrite({ ...shown, [kind.reversed]: shown[kind.reversed].map((x) => 0 - x) }));
+  part(".reverse").addEventListener("click", () => {
+    if (!shown) return;
+    const opposite = { loading: "unloading", unloading: "loading" };
+    const segments = shown.segments?.map((each) => ({ ...each, kind: opposite[each.kind] ?? each.kind }));
+    const drift = shown.drift && [-shown.drift[0], shown.drift[1]];
+    rewrite({ ...shown, segments, drift, [kind.reversed]: shown[kind.reversed].map((x) => 0 - x) });
+  });
   part(".centre")?.addEventListener("click", () => {
     if (!shown) return;
     const axis = axisOf(shown);

@@ -30,7 +30,9 @@ def solve_fit(query: FitQuery) -> Fit:
     `correlated_noise`, or `misfit` where the shape or the model is wrong. Others tell that one
     point decides (`one_point`), that the interval of the contact point is lopsided
     (`undetermined`), or that no adhesion is seen (`bound`). With `poissons_ratio` the response has
-    Young's modulus of the sample.
+    Young's modulus of the sample. With `time` a `drift` is subtracted from the depths: that of a
+    `hold`, at at most half of the largest force, or a `drift_rate`; the standard errors contain the
+    error of the rate.
     `error_estimate` is the numerical error of the parameters.
     """
     if ("e_star" in query.fit) == query.has("material"):
@@ -53,6 +55,10 @@ def solve_fit(query: FitQuery) -> Fit:
         poissons_ratio=query.poissons_ratio,
         indenter=as_body(query.indenter),
         layer=Layer(**vars(query.layer)) if query.has("layer") else in_material,
+        time=query.time,
+        drift=query.drift,
+        drift_rate=query.drift_rate,
+        drift_rate_error=query.drift_rate_error,
     )
 
 

@@ -168,8 +168,13 @@ class FitAnswer(LeastSquaresAnswer):
     youngs_modulus_error: list[float] = _pressure(
         "Its standard deviation, by that of E*", default=None
     )
+    drift_rate: list[float] = quantity(
+        "length/time", "Drift of the depths that is subtracted", default=None
+    )
+    drift_rate_error: list[float] = quantity("length/time", "Its standard deviation", default=None)
     indentation_depth: list[float] = _length(
-        "Measured depths; with adhesion without those between the least force and the pull-off"
+        "Measured depths, less a drift; with adhesion without those between the least force and "
+        "the pull-off"
     )
     normal_force: list[float] = _force("Fitted forces")
 
@@ -481,7 +486,9 @@ class TableColumn(Answer):
 class TableSegment(Answer):
     """Branch of a curve."""
 
-    kind: Literal["loading", "unloading"] = Field(description="Direction of the depth.")
+    kind: Literal["loading", "hold", "unloading"] = Field(
+        description="`loading`, `unloading`, or `hold` at a constant force or depth."
+    )
     first: int = Field(description="First row, from 0.")
     last: int = Field(description="Last row.")
 
@@ -498,7 +505,17 @@ class TableAnswer(Answer):
     scales: list[float | None] = Field(description="These units in metres or newtons.")
     lines: list[int] = Field(description="Line of each point in the file, from 1.")
     notes: list[str] = Field(description="Which columns are taken.")
-    segments: list[TableSegment] = left_out("Branches of a curve, by turning points of the depth.")
+    segments: list[TableSegment] = left_out(
+        "Segments of a curve, by a column that names them, else by the direction of the depth."
+    )
+    time: list[float] = left_out(
+        "Times of a curve from its first point in seconds, if a column has a unit of time."
+    )
+    drift_rate: list[float] = left_out(
+        "Drift of the depth in the last hold at a low force, in the unit of the depths per second, "
+        "in a list of one entry."
+    )
+    drift_rate_error: list[float] = left_out("Its standard error.")
 
 
 class ProblemError(Answer):

@@ -50,8 +50,23 @@ class FitQuery(Query):
     )
     body_thickness: float = thickness()
     segment: Literal["loading", "unloading"] = left_out(
-        "Branch to fit, by the direction of the depth in the order of the lists; by default all "
-        "points."
+        "Branch to fit, by the direction of the depth in the order of the lists, without holds; by "
+        "default all points."
+    )
+    time: list[Signed] = quantity(
+        "time",
+        "Times of the points, which do not fall, from that at which the drift is 0",
+        default=None,
+        **_CURVE,
+    )
+    drift: Literal["hold"] = left_out(
+        "`hold` to subtract the drift of the depths in the last hold at a constant low force."
+    )
+    drift_rate: Signed = quantity(
+        "length/time", "Drift of the depths to subtract, in place of `drift`", default=None
+    )
+    drift_rate_error: Size = quantity(
+        "length/time", "Its standard deviation, 0 by default", default=None
     )
     poissons_ratio: float = quantity(
         "1",
