@@ -126,10 +126,12 @@ def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
     floor = _FLOOR
     if chosen.sigma[chosen.at] < _FLOOR:
         # A flat that is met is flat up to rounding errors, and what is smooth has no jumps.
-        flat = np.abs(splines) < _FLOOR
-        splines[flat] = (ADJACENT * basis.places[1:])[flat]
-        jumps[np.abs(jumps) < _FLOOR] = 0.0
-        floor = 0.0
+        given, floor = chosen.given, 0.0
+        flat = np.flatnonzero(np.abs(splines) < _FLOOR)
+        given[flat] = ADJACENT * basis.places[1:][flat]
+        given[basis.size - 1 : -2 : 2][np.abs(jumps) < _FLOOR] = 0.0
+        coefficients = _by_rows(basis, chosen, given)
+        jumps = coefficients[basis.size - 1 : -2 : 2]
     # Where the slope falls by a step, g' is infinite and negative beyond it.
     falls = min(jumps.min(initial=0.0), coefficients[-1]) < 0
     if not falls and basis.slopes(coefficients).min() > floor:
@@ -342,9 +344,10 @@ class _Model:
         share = self.weights[self.at] / sum2
         seen, left = self.turn @ self.seen, self.turn @ self.left
         influence = self.smooth @ seen.T + self.rough * (self.size / sum2) @ left.T
-        residual = self.rest + left @ (share * self.part)
         outside = 1 - np.square(seen).sum(axis=1) - np.square(left).sum(axis=1)
-        own = np.square(left) @ share + np.where(outside > _UNSEEN, outside, 0.0)
-        own = np.maximum(own, np.finfo(float).tiny)
+        # The columns meet a point that has no share outside of them: its rest is a rounding error.
+        outside = np.where(outside > _UNSEEN, outside, 0.0)
+        residual = np.where(outside > 0, self.rest, 0.0) + left @ (share * self.part)
+        own = np.maximum(np.square(left) @ share + outside, np.finfo(float).tiny)
         over = np.square(residual / own) - self.sigma[self.at] ** 2 / own
         return influence * np.sqrt(np.maximum(over, 0.0))
