@@ -33,7 +33,7 @@ def main() -> None:
         profile = Tabulated(given.r, given.f, given.breaks, given.uncertainty)
         own, exact = (solve(each, 1.0, contact_radius=a) for each in (profile, given.body))
         names = ("indentation_depth", "normal_force")
-        missed = np.max([abs(getattr(own, n) / getattr(exact, n) - 1) for n in names], axis=0)
+        missed = np.max([abs(1 - getattr(exact, n) / getattr(own, n)) for n in names], axis=0)
         stated = np.asarray(own.data_error) + own.error_estimate
         found += [(given.r.size, *pair) for pair in zip(missed, stated, strict=True)]
     count, missed, stated = np.maximum(np.array(found), LOWEST).T

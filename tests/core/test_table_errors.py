@@ -29,13 +29,13 @@ FLOOR = 1e-12
 
 
 def compared(table: Table) -> tuple[Array, Array, set[str]]:
-    """Larger error of depth and force, the stated one, and the codes of warnings."""
+    """Larger error of depth and force over the answer, the stated one, and codes of warnings."""
     a = PARTS * np.abs(table.r).max()
     a = a[a > 1.001 * table.body.first_radius]
     profile = Tabulated(table.r, table.f, breaks=table.breaks, uncertainty=table.uncertainty)
     found, known = (solve(each, 1.0, contact_radius=a) for each in (profile, table.body))
     names = ("indentation_depth", "normal_force")
-    missed = [np.abs(getattr(found, name) / getattr(known, name) - 1) for name in names]
+    missed = [np.abs(1 - getattr(known, name) / getattr(found, name)) for name in names]
     stated = np.maximum(np.asarray(found.data_error) + found.error_estimate, FLOOR)
     return np.maximum(*missed), stated, {notice.code for notice in found.warnings}
 
@@ -51,7 +51,7 @@ def test_random_tables_are_covered() -> None:
         silent += bool(unsaid.any()) and "smoothed" not in codes
     ratio = np.concatenate(missed) / np.concatenate(stated)
     assert np.mean(ratio <= 1) >= 0.96
-    assert np.mean(ratio <= 3) >= 0.98
+    assert np.mean(ratio <= 3) >= 0.99
     assert silent <= 2
 
 

@@ -28,10 +28,10 @@ from mdr_core.typing import Array
 _FAR: Final = 2.0
 # Nodes there: they leave 1e-11 of the roughest piece, and 1e-16 of a smooth one.
 _FAR_NODES, _FAR_WEIGHTS = composite_rule(8)
-# Nodes of a piece next to r.
-_NEAR_NODES, _NEAR_WEIGHTS = composite_rule(16)
-# Sorted radii that share their far pieces.
-_BLOCK: Final = 16
+# Rules of a piece next to r, beyond it (1) and within (-1), where x = -r is nearer in w.
+_NEAR: Final = {1: composite_rule(12), -1: composite_rule(16)}
+# Sorted radii whose far pieces are taken together.
+_BLOCK: Final = 64
 
 
 def integrals(
@@ -54,22 +54,24 @@ def integrals(
     if len(several := in_blocks(r.size)) > 1:
         found = [integrals(slope, left, length, r[block], kernel, sign) for block in several]
         return np.concatenate(found)
-    order = np.argsort(r, kind="stable")
+    order = np.argsort(sign * r, kind="stable")
     at = r[order, None]
-    x = left[:, None] + length[:, None] * _FAR_NODES
-    weighted = sparse.diags((length[:, None] * _FAR_WEIGHTS).ravel()) @ slope(x.ravel())
+    x = (left[:, None] + length[:, None] * _FAR_NODES).ravel()
+    weighted = sparse.diags((length[:, None] * _FAR_WEIGHTS).ravel()) @ slope(x)
     inner, outer = (left, left + length)[::sign]
+    # A piece is far from the radii up to its limit, in this order.
+    limit = sign * inner - _FAR * length
+    limits, squares = limit.repeat(_FAR_NODES.size), sign * (x * x)
     total = np.zeros((r.size, *weighted.shape[1:]))
-    near = np.zeros((r.size, left.size), dtype=bool)
     for start in range(0, r.size, _BLOCK):
         index = slice(start, start + _BLOCK)
         block = at[index]
-        far = sign * (inner - block[-(sign > 0)]) >= _FAR * length
-        own = x[far].ravel()
-        root = np.sqrt(np.abs(own * own - block * block))
-        total[index] = kernel(own, root) @ weighted[far.repeat(_FAR_NODES.size)]
-        near[index] = ~far & (sign * (outer - block) > 0)
-    point, piece = np.nonzero(near)
+        seen = limits >= sign * block[0]
+        far = sign * block <= limits[seen]
+        root = np.sqrt(np.where(far, squares[seen] - sign * (block * block), 1.0))
+        total[index] = (kernel(x[seen], root) * far) @ weighted[seen]
+    near = (sign * at > limit) & (sign * (outer - at) > 0)
+    point, piece = np.divmod(np.flatnonzero(near), left.size)
     at = at[point, 0]
     distance = np.maximum(sign * (inner[piece] - at), 0.0)
     reach = np.minimum(length[piece], sign * (outer[piece] - at))
@@ -78,7 +80,7 @@ def integrals(
     low, high = left + EPS * length, left + length
     places = np.clip(places, low[piece, None], high[piece, None])
     values = (weight * kernel(places, root)).ravel()
-    ends = _NEAR_NODES.size * np.searchsorted(point, np.arange(r.size + 1))
+    ends = weight.shape[1] * np.searchsorted(point, np.arange(r.size + 1))
     spread = sparse.csr_matrix((values, np.arange(values.size), ends), (r.size, values.size))
     rest: Any = spread @ slope(places.ravel())
     total += rest if isinstance(rest, np.ndarray) else rest.toarray()
@@ -97,11 +99,12 @@ def near_rule(r: Array, distance: Array, length: Array, sign: int) -> tuple[Arra
     length : of the piece [length], shape (m,).
     sign : 1 for a piece beyond r, -1 for one within.
     """
+    nodes, weights = _NEAR[sign]
     first = np.sqrt(distance)
     step = (length / (first + np.sqrt(distance + length)))[:, None]
-    w = first[:, None] + step * _NEAR_NODES
+    w = first[:, None] + step * nodes
     x = r[:, None] + sign * w * w
-    return x, w * np.sqrt(x + r[:, None]), 2 * w * step * _NEAR_WEIGHTS
+    return x, w * np.sqrt(x + r[:, None]), 2 * w * step * weights
 
 
 def heights(knots: Array, r: Array, basis: Callable[[Array], Any]) -> Array:

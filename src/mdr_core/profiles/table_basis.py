@@ -110,8 +110,10 @@ class TableBasis:
         self.size = self.t.size - k - 1
         x = points.x
         splines = heights(knots, x, lambda at: BSpline.design_matrix(at, self.t, k))
-        past = [np.maximum(x - b, 0.0) for b in points.breaks]
-        jumps = [column for each in past for column in (each, each * each / 2)]
+        self.shapes = [
+            kind(b, 1.0) for b in points.breaks for kind in (TruncatedCone, RoundedPunch)
+        ]
+        jumps = [shape.f(x) for shape in self.shapes]
         self.heights = np.column_stack([splines[:, 1:], *jumps, np.ones_like(x), splines[:, 0]])
 
         self.weighted = self.heights * points.weight[:, None], points.y * points.weight
@@ -129,14 +131,6 @@ class TableBasis:
     def places(self) -> Array:
         """Coefficients of the slope x."""
         return sliding_window_view(self.t[1:-1], self.degree).mean(axis=1)
-
-    @property
-    def free(self) -> Flags:
-        """Columns whose coefficients may be negative: jumps of the curvature and the offset."""
-        free = np.zeros(self.heights.shape[1], dtype=bool)
-        free[self.size : -2 : 2] = True
-        free[-2] = True
-        return free
 
     def closed(self, jumps: Flags) -> Indices:
         """Columns of the slopes that do not jump; `jumps` at the axis and at each break."""
@@ -216,12 +210,9 @@ class TableBasis:
         share = (np.arange(_TESTED) + 0.5) / _TESTED
         x = np.append((knots[:-1, None] + np.diff(knots)[:, None] * share).ravel(), 1.0)
         slope = self.spline(coefficients)(x)
-        jumps = coefficients[self.size - 1 : -2].reshape(-1, 2)
-        for b, (jump, bend) in zip(self.points.breaks, jumps, strict=True):
-            past = x > b
-            s = np.sqrt((x[past] - b) * (x[past] + b))
-            angle = np.arctan2(s, b)
-            slope[past] += jump * (angle + b / s) + bend * (2 * s - b * angle)
+        for shape, jump in zip(self.shapes, coefficients[self.size - 1 : -2], strict=True):
+            if jump != 0:
+                slope += jump * shape.dg(x)
         return slope
 
     def deviation(self, coefficients: Array) -> Array:
@@ -240,9 +231,6 @@ class TableBasis:
         worst = int(np.argmax(np.abs(off)))
         possible = self.spline(spread)
         many = spread.reshape(len(spread), -1)
-        shapes = [
-            kind(b, 1.0) for b in self.points.breaks for kind in (TruncatedCone, RoundedPunch)
-        ]
         return TableFit(
             self.knots * end,
             rows * powers,
@@ -250,7 +238,7 @@ class TableBasis:
             height * root_mean_square(off * np.minimum(self.points.weight, 1.0)),
             (height * float(abs(off[worst])), end * float(self.points.x[worst])),
             (possible, possible.antiderivative(), possible.antiderivative(2)),
-            tuple(zip(shapes, many[self.size - 1 : -2], strict=True)),
+            tuple(zip(self.shapes, many[self.size - 1 : -2], strict=True)),
             self.points.scale,
             rival,
             end * float(self.points.x[point]),

@@ -16,7 +16,6 @@ from typing import Final
 import numpy as np
 from scipy.linalg import qr_multiply, solve_triangular
 from scipy.optimize import nnls
-from scipy.special import stdtrit
 
 from mdr_core.doubles import ADJACENT, EPS
 from mdr_core.errors import InputError
@@ -36,7 +35,7 @@ _GRADINGS: Final = (np.inf, 0.1, -0.1)
 # Twice the logarithm of the odds against one jump of the slope, e to 1.
 _JUMP: Final = 2.0
 # Likelihood over the largest one below which a choice has no share in the error.
-_NEGLIGIBLE: Final = 1e-3
+_NEGLIGIBLE: Final = 1e-2
 # Change of twice the logarithm of the likelihood that decides nothing: 5 % of the odds.
 _SAME: Final = 0.1
 # Smallest jump of the slope over the mean slope: a smaller one replaces a higher derivative's.
@@ -48,8 +47,6 @@ _UNSEEN: Final = 1e-8
 # Standard deviation of heights that are met, over their range: rounding errors of the fit, by
 # trial with 50 to 500 points of r^2 and r^3.
 _LEAST_SIGMA: Final = 32 * ADJACENT
-# Quantile of the error of the data: two standard deviations of a normal distribution.
-_QUANTILE: Final = 0.97725
 # Lowest g'/x, over that of the paraboloid through the last point: g increases strictly.
 _FLOOR: Final = 1e-9
 # Deviation from the points, root mean square over the height, from which the shape has no contact
@@ -126,10 +123,12 @@ def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
     floor = _FLOOR
     if chosen.sigma[chosen.at] < _FLOOR:
         # A flat that is met is flat up to rounding errors, and what is smooth has no jumps.
-        flat = np.abs(splines) < _FLOOR
-        splines[flat] = (ADJACENT * basis.places[1:])[flat]
-        jumps[np.abs(jumps) < _FLOOR] = 0.0
-        floor = 0.0
+        given, floor = chosen.given, 0.0
+        flat = np.flatnonzero(np.abs(splines) < _FLOOR)
+        given[flat] = ADJACENT * basis.places[1:][flat]
+        given[basis.size - 1 : -2 : 2][np.abs(jumps) < _FLOOR] = 0.0
+        coefficients = _by_rows(basis, chosen, given)
+        jumps = coefficients[basis.size - 1 : -2 : 2]
     # Where the slope falls by a step, g' is infinite and negative beyond it.
     falls = min(jumps.min(initial=0.0), coefficients[-1]) < 0
     if not falls and basis.slopes(coefficients).min() > floor:
@@ -163,7 +162,7 @@ def _spread(
     odds = [np.exp((least[bool(each.jumps[0])] - each.score) / 2) for each in tried]
     total, center = sum(each.sum() for each in odds), best.mean(np.array([best.at]))
     left_out = best.excess()
-    parts, rival = [2 * left_out], 0.0
+    parts, rival = [left_out], 0.0
     if excess > 1:
         at = np.array([best.at])
         noisier = best.weights.searchsorted(best.weights[at] * excess**2, side="right") - 1
@@ -175,9 +174,9 @@ def _spread(
         if likely.size:
             share = own[likely] / total
             off = each.mean(likely) - center
-            parts += [each.posterior(likely, share), 2 * off * np.sqrt(share)]
+            parts += [each.posterior(likely, share), off * np.sqrt(share)]
     # Few points leave a jump open without bound, but no admissible slope is that large.
-    spread = np.hstack(parts)
+    spread = 2 * np.hstack(parts)
     spread *= _LARGEST / np.abs(spread).max(axis=0).clip(_LARGEST)
     spread = np.asarray(np.linalg.qr(spread.T, mode="r")).T
     return spread, float(rival), int(np.argmax(np.linalg.norm(left_out, axis=0)))
@@ -193,7 +192,8 @@ def _not_negative(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
     system = np.vstack([heights, chosen.rows])
     right = np.append(goal, np.zeros(len(chosen.rows))) - system @ floor
     closed = ~np.isnan(chosen.given)
-    bound, found = ~basis.free & ~closed, floor
+    bound, found = ~closed, floor
+    bound[-2] = False
     for with_bends in (False, True):
         # A curvature that drops at a break may bring the slope below zero: then it must not drop.
         bound[basis.size : -2 : 2] = with_bends
@@ -279,11 +279,10 @@ class _Model:
         self.weights = max(float(np.square(self.size).max(initial=0.0)), _UNSEEN**2) * _WEIGHTS
         share = self.weights[:, None] / np.add.outer(self.weights, np.square(self.size))
         whole = share @ np.square(self.part) + np.square(self.rest).sum()
-        freedom = max(self.left_over, 1)
-        self.quantile, variance = 2.0, 0 * whole + max(uncertainty or 0.0, _LEAST_SIGMA) ** 2
+        variance = 0 * whole + max(uncertainty or 0.0, _LEAST_SIGMA) ** 2
         if uncertainty is None:
-            self.quantile = float(stdtrit(freedom, _QUANTILE))
-            variance = np.maximum(whole / freedom, max(basis.points.rounding, _LEAST_SIGMA) ** 2)
+            least = max(basis.points.rounding, _LEAST_SIGMA)
+            variance = np.maximum(whole / max(self.left_over, 1), least**2)
         self.sigma = np.sqrt(variance)
         self.score = (
             whole / variance
@@ -329,12 +328,12 @@ class _Model:
         return (self.smooth @ self.fitted)[:, None] + self.rough @ bent.T
 
     def posterior(self, at: Indices, share: Array) -> Array:
-        """Possible deviations of the coefficients, for a mixture of weights. Source: wahba."""
+        """Standard deviations of the coefficients, for a mixture of weights. Source: wahba."""
         size2 = np.append(np.square(self.size), np.zeros(self.open.shape[1]))
         variance = np.square(self.sigma[at]) * share
         bent = np.sqrt(variance @ (1 / np.add.outer(self.weights[at], size2)))
         smooth = np.sqrt(variance.sum()) * self.smooth
-        return self.quantile * np.hstack([smooth, np.hstack([self.rough, self.open]) * bent])
+        return np.hstack([smooth, np.hstack([self.rough, self.open]) * bent])
 
     def excess(self) -> Array:
         """Influence of each point times the excess of its residual if left out. Source: rippa."""
@@ -342,9 +341,10 @@ class _Model:
         share = self.weights[self.at] / sum2
         seen, left = self.turn @ self.seen, self.turn @ self.left
         influence = self.smooth @ seen.T + self.rough * (self.size / sum2) @ left.T
-        residual = self.rest + left @ (share * self.part)
         outside = 1 - np.square(seen).sum(axis=1) - np.square(left).sum(axis=1)
-        own = np.square(left) @ share + np.where(outside > _UNSEEN, outside, 0.0)
-        own = np.maximum(own, np.finfo(float).tiny)
+        # The columns meet a point that has no share outside of them: its rest is a rounding error.
+        outside = np.where(outside > _UNSEEN, outside, 0.0)
+        residual = np.where(outside > 0, self.rest, 0.0) + left @ (share * self.part)
+        own = np.maximum(np.square(left) @ share + outside, np.finfo(float).tiny)
         over = np.square(residual / own) - self.sigma[self.at] ** 2 / own
         return influence * np.sqrt(np.maximum(over, 0.0))
