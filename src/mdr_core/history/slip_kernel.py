@@ -251,10 +251,8 @@ class SlipFront:
         before, after : normal and tangential coordinate before and after each step, shape (2, n).
         """
         for i in range(len(tops)):
-            x = before[0, i]
-            y = before[1, i]
-            x_end = after[0, i]
-            y_end = after[1, i]
+            x, y = before[0, i], before[1, i]
+            x_end, y_end = after[0, i], after[1, i]
             if x <= 0 and x_end <= 0:
                 continue
             # Contact begins, or ends, where the straight step crosses normal coordinate zero.
@@ -265,8 +263,7 @@ class SlipFront:
                 y_end = y + (y_end - y) * x / (x - x_end)
                 x_end = 0.0
             self.step = i
-            self.down = x - x_end
-            self.aside = y - y_end
+            self.down, self.aside = x - x_end, y - y_end
             self._descend(parent, vertices, tops[i])
             # Springs that come into contact slip at once where the path is steeper than friction.
             if self.down < 0 and abs(self.aside) > -self.down:
@@ -327,8 +324,7 @@ class SlipFront:
             self.pieces[0, self.count] = self.step
             self.pieces[1, self.count] = low + (1 - stop) * span
             self.pieces[2, self.count] = length
-            n += start * span
-            s += start * turn
+            n, s = n + start * span, s + start * turn
             turn *= stop - start
             # Cross products of P' and both ends: positive where b is exceeded first.
             upper = s * self.down - n * self.aside
@@ -341,8 +337,7 @@ class SlipFront:
             before = max(-sign * upper / fall, 0.0)
             high_friction = (before + max(n - self.down, 0.0)) / 2
             high = self._fall(n, fall - (n + sign * s), before * fall)
-            n += length
-            s += turn
+            n, s = n + length, s + turn
             before = max(-sign * lower / fall, 0.0)
             low_friction = (before + max(n - self.down, 0.0)) / 2
             low = self._fall(n, fall - (n + sign * s), before * fall)
