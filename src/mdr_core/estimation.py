@@ -126,11 +126,11 @@ def minimum(
         return change, float(np.linalg.norm(slope @ change))
 
     # The search ends where rounding hides how squares fall, about 1e-8 from the minimum. Steps of
-    # Gauss and Newton reach it from there; each is kept if the next one is at most half as long.
+    # Gauss and Newton reach it from there; each is kept if the next one is less than half as long.
     x, (change, length) = found.x, step(found.x)
     while ((bounds[0] <= x + change) & (x + change <= bounds[1])).all():
         following, remaining = step(x + change)
-        if remaining > length / 2:
+        if not remaining < length / 2:
             break
         x, change, length = x + change, following, remaining
     return np.asarray(x)
