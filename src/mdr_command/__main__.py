@@ -138,7 +138,8 @@ def _run(given: Sequence[str]) -> int:
 
 def parser_of(loaded: Container[str]) -> argparse.ArgumentParser:
     """Return the parser of all commands, with the arguments of those that are `loaded`."""
-    parser = argparse.ArgumentParser(prog="mdr", description=_ABOUT)
+    about = "Contact mechanics of axisymmetric bodies by the method of dimensionality reduction."
+    parser = argparse.ArgumentParser(prog="mdr", description=about)
     # The version of the core is read without importing it, which takes a third of a second.
     shown = f"mdr {version('mdr-contact')}"
     if not any(Path(__file__).parents[1].glob("mdr_core/history/slip_kernel.*.so")):
@@ -159,11 +160,6 @@ def parser_of(loaded: Container[str]) -> argparse.ArgumentParser:
             if hasattr(module, "declare"):
                 module.declare(own)
     return parser
-
-
-_ABOUT: Final = (
-    "Contact mechanics of axisymmetric bodies by the method of dimensionality reduction."
-)
 
 
 if __name__ == "__main__":

@@ -3,18 +3,16 @@
 import argparse
 import sys
 from importlib import import_module
-from typing import Final
 
 import shtab
 
 from mdr_command import ExitStatus
 
-_SHELLS: Final = ("bash", "zsh", "tcsh")
-
 
 def declare(parser: argparse.ArgumentParser) -> None:
     """Declare the shell."""
-    parser.add_argument("shell", choices=_SHELLS, help="shell for which to print the script")
+    shells = "bash", "zsh", "tcsh"
+    parser.add_argument("shell", choices=shells, help="shell for which to print the script")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -120,7 +120,7 @@ def only_one(
     return name, values
 
 
-def single(path: tuple[str | int, ...], value: float) -> float:
+def single(path: tuple[str | int, ...], value: ArrayLike) -> float:
     """Return a single number as a double, or raise InputError at the path."""
     numbers = as_numbers(path, value)
     if numbers.ndim:

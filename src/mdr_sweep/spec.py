@@ -48,8 +48,6 @@ NaN without Poisson's ratio, and the error of radius and pressure NaN but for ro
 WARNING, ERROR = "warning", "error"
 TEXTS: Final = frozenset({"regime", WARNING, ERROR})
 """Columns of the result that are not numbers."""
-UNREADABLE: Final = "; read "
-"""Words of an error before the cells that are not numbers."""
 # Packages on which the last digits of the result, and the bytes of its file, depend.
 _PACKAGES: Final = ("numpy", "scipy", "pyarrow")
 

@@ -24,7 +24,6 @@ from mdr_sweep.spec import (
     ERROR,
     ONLY_IF_NAMED,
     QUANTITIES,
-    UNREADABLE,
     WARNING,
     Spec,
     SweepStatus,
@@ -36,8 +35,9 @@ from mdr_sweep.tables import SUFFIXES, Grid, Source, Table, write
 # Interval of progress reports into a log [s].
 _LOG_SECONDS: Final = 30.0
 _UNITS: Final = "the consistent system of the input: with m and N, pressures are in Pa"
-# Numbers in an error message, which vary between cases; indices in a JSON pointer follow a slash.
-_NUMBER: Final = re.compile(r"(?<![\w/.])[-+]?[0-9][\w.+-]*")
+# Texts of cells and numbers in an error message, which vary between cases; indices in a JSON
+# pointer follow a slash.
+_VARIES: Final = re.compile(r"""(?<!\w)(['"]).*?\1|(?<![\w/.])[-+]?[0-9][\w.+-]*""")
 
 
 def run(arguments: Namespace) -> int:
@@ -125,7 +125,7 @@ def summary(batches: Iterable[pa.RecordBatch]) -> tuple[int, list[str]]:
         errors = batch.column(ERROR)
         for place in np.flatnonzero(errors.is_valid()).tolist():
             error = errors[place].as_py()
-            reason = _NUMBER.sub("…", error.partition(UNREADABLE)[0])
+            reason = _VARIES.sub("…", error)
             count, first, text = reasons.get(reason, (0, rows + place + 1, error))
             reasons[reason] = count + 1, first, text
         rows += len(errors)

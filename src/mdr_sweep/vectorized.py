@@ -23,7 +23,7 @@ from mdr_service.queries.contacts import body, control, friction, yields
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.flat import nested
 from mdr_sweep.request_columns import Column, Values, read_columns
-from mdr_sweep.spec import ERROR, TEXTS, UNREADABLE, WARNING, Spec
+from mdr_sweep.spec import ERROR, TEXTS, WARNING, Spec
 
 Rows = NDArray[np.intp]
 Results = dict[str, NDArray[Any]]
@@ -55,7 +55,7 @@ def solve(spec: Spec, batch: pa.RecordBatch) -> pa.RecordBatch:
         texts = [str(column.cells[row]) for column in columns.values() if column.is_unreadable(row)]
         if texts:
             # The column of the result has no place for them.
-            case[ERROR] += UNREADABLE + ", ".join(map(repr, texts))
+            case[ERROR] += "; read " + ", ".join(map(repr, texts))
         for name, value in case.items():
             results[name][row] = value
     found = dict(zip(batch.schema.names, batch.columns, strict=True))

@@ -7,6 +7,7 @@ import pytest
 
 import mdr_core as mdr
 from mdr_core import fit, residuals
+from mdr_core.estimation import minimum
 
 Array = np.ndarray
 BALL = mdr.Paraboloid(1.0)
@@ -223,3 +224,17 @@ def test_one_depth_beyond_the_least_force_is_refused() -> None:
     names = ("e_star", "work_of_adhesion")
     with pytest.raises(mdr.InputError, match="different depths in contact"):
         fit.solve(BALL, indentation_depth=depth, normal_force=force, fit=names)
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-4, 1e-2])
+def test_fit_ends_at_the_minimum_to_rounding(size: float) -> None:
+    depth = np.linspace(-0.1, 0.5, 300)
+    force = hertz(depth - 0.01)
+    force += noise(np.random.default_rng(1), force, size)
+    assert fit.solve(BALL, indentation_depth=depth, normal_force=force).error_estimate < 1e-12
+
+
+def test_search_ends_where_residuals_vanish() -> None:
+    bounds = np.array([[-np.inf] * 2, [np.inf] * 2])
+    found = minimum(np.zeros_like, np.ones(2), lambda _: np.eye(2), bounds)
+    assert found.tolist() == [1.0, 1.0]

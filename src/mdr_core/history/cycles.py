@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from mdr_core.history.solver import LoadHistory, solve
 from mdr_core.materials import Material
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
-from mdr_core.validation import UNRESOLVED, require_whole, single
+from mdr_core.validation import UNRESOLVED, only_one, require_whole, single
 
 
 @dataclass(frozen=True, repr=False)
@@ -101,37 +101,26 @@ def cycles(
     True
     """
     require_whole(("history", "count"), count)
-    mean = indentation_depth if normal_force is None else normal_force
-    normal = "indentation_depth" if normal_force is None else "normal_force"
-    tangential = "tangential_displacement" if tangential_force is None else "tangential_force"
+    pressed = {"indentation_depth": indentation_depth, "normal_force": normal_force}
+    pushed = {
+        "tangential_displacement": tangential_displacement,
+        "tangential_force": tangential_force,
+    }
+    normal, mean = only_one(("history", "normal"), pressed)
+    tangential, swing = only_one(("history", "tangential"), pushed)
     amplitude = single(("history", "normal", "amplitude"), normal_amplitude)
     if samples_per_step is None:
         samples_per_step = default_samples(normal, tangential) if amplitude else 1
-    if mean is not None and not 0 <= amplitude <= single(("history", "normal", normal), mean):
+    middle = single(("history", "normal", normal), mean)
+    if not 0 <= amplitude <= middle:
         raise InputError(("history", "normal", "amplitude"), "must lie between 0 and the mean")
     if count < 1:
         raise InputError(("history", "count"), "must be at least 1")
     phase = np.append([0.0, 1.0], np.tile([-1.0, 1.0], count))
-
-    def around(value: float | None) -> Array | None:
-        path = "history", "normal", normal
-        return None if value is None else single(path, value) + amplitude * phase
-
-    def turning(value: float | None) -> Array | None:
-        path = "history", "tangential", tangential
-        return None if value is None else single(path, value) * phase
-
-    history = solve(
-        profile,
-        e_star,
-        g_star,
-        friction_coefficient,
-        indentation_depth=around(indentation_depth),
-        normal_force=around(normal_force),
-        tangential_displacement=turning(tangential_displacement),
-        tangential_force=turning(tangential_force),
-        samples_per_step=samples_per_step,
-    )
+    turning = single(("history", "tangential", tangential), swing) * phase
+    loads: dict[str, Any] = {normal: middle + amplitude * phase, tangential: turning}
+    contact = profile, e_star, g_star, friction_coefficient
+    history = solve(*contact, **loads, samples_per_step=samples_per_step)
     if history.rounding > UNRESOLVED:
         detail = (
             "the tangential load is lost in the rounding errors of the normal load: increase it"

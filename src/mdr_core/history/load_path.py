@@ -196,11 +196,6 @@ class SampledPath:
         return LoadPoints(normal, tangential, self._continues)
 
     @cached_property
-    def at_start(self) -> Polyline:
-        """Polyline at the start."""
-        return self.begin.restored(*self.coordinates[:, 0].tolist())
-
-    @cached_property
     def coordinates(self) -> Array:
         """Normal and tangential coordinate at the start and at each sample, shape (2, n + 1).
 
@@ -305,12 +300,6 @@ def _checked(axis: str, name: str, value: Array) -> Array:
     require = require_not_negative if name == "normal_force" else require_finite
     require(("history", axis, name), points)
     return points
-
-
-def saved(line: Polyline) -> list[list[float]]:
-    """Return the sums of the vertices below the load point, in the form of `SavedState`."""
-    rows: list[list[float]] = line.vertices[:-1, :NORMAL].tolist()
-    return rows
 
 
 def digest(start: ContactState, *controls: str) -> str:

@@ -34,12 +34,28 @@ cdef class PolylineStack:
     ) noexcept
 
 
-@cython.locals(
-    at=Py_ssize_t, below=Py_ssize_t, count=Py_ssize_t, i=Py_ssize_t, room=Py_ssize_t
-)
-cpdef Py_ssize_t sweep(
-    Py_ssize_t[::1] parent, const double[:, :] vertices, Py_ssize_t[::1] tops,
-    double[:, ::1] fallen, double[:, ::1] swept
-)
+@cython.final
+cdef class SlipFront:
+    cdef double[:, ::1] pieces
+    cdef Py_ssize_t count, step
+    cdef double down, aside
+
+    @cython.locals(i=Py_ssize_t)
+    cpdef Py_ssize_t run(
+        self, Py_ssize_t[::1] parent, const double[:, :] vertices, Py_ssize_t[::1] tops,
+        double[:, ::1] before, const double[:, :] after
+    )
+    @cython.locals(below=Py_ssize_t)
+    cdef void _descend(
+        self, Py_ssize_t[::1] parent, const double[:, :] vertices, Py_ssize_t at
+    ) noexcept
+    cdef void _part(self, double low, double n, double s, double span, double turn) noexcept
+    @cython.locals(backward=bint)
+    cdef void _piece(
+        self, double low, double n, double s, double span, double turn, double start, double stop
+    ) noexcept
+    cdef double _fall(self, double n, double in_contact, double apart) noexcept
+
+
 @cython.locals(below=Py_ssize_t, i=Py_ssize_t)
 cpdef accumulate(Py_ssize_t[::1] parent, double[::1] step, double[::1] total)

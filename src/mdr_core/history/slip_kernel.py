@@ -1,4 +1,4 @@
-"""Sequential loops of load histories: the polyline after each step, and the path of the slip front.
+"""Sequential loops of load histories: the polyline after each step, and the sweep of the front.
 
 Every load point depends on the previous one, so that NumPy cannot vectorise the loop. Cython
 compiles this file as it stands, with the C types of `slip_kernel.pxd`; uncompiled it returns
@@ -217,30 +217,66 @@ class PolylineStack:
         self.rows[at, SLOPE] = slope
 
 
-def sweep(parent: Indices, vertices: Array, tops: Indices, fallen: Array, swept: Array) -> int:
-    """List the parts of segments that the slip front sweeps on each step; return their number.
+class SlipFront:
+    """Slip front of straight load steps: pieces of the polyline that it sweeps, with their work.
 
     On a step from P to P' a place of the polyline slips as soon as it exceeds the load point in one
     of the sums f and b. The front moves down from P to where neither sum exceeds its value at P'.
+    Parts of segments are divided at the breaks of the work M, see `friction_work`.
 
     Parameters
     ----------
-    parent, vertices : tree of all polylines, see `PolylineStack.run`.
-    tops : vertex of the load point before each step, shape (n,).
-    fallen : decrease of its normal and tangential coordinate on each step, shape (2, n).
-    swept : receives six numbers of each part as long as there is room: step, normal coordinate of
-        the lower end, and the distances in normal coordinate and anchor from P down to the upper
-        end, and from there to the lower one; shape (6, room).
+    pieces : receives six numbers of each piece with work as long as there is room: step, normal
+        coordinate of the lower end, length in the normal coordinate, and the Bernstein coefficients
+        of M, upwards; shape (6, room).
     """
-    count = 0
-    room = swept.shape[1]
-    for i in range(len(tops)):
-        f_end = fallen[0, i] + fallen[1, i]
-        b_end = fallen[0, i] - fallen[1, i]
+
+    def __init__(self, pieces: Array) -> None:
+        self.pieces = pieces
+        self.count = 0
+        self.step = 0
+        # Decrease of the normal and of the tangential coordinate of the load point on the step.
+        self.down = 0.0
+        self.aside = 0.0
+
+    def run(
+        self, parent: Indices, vertices: Array, tops: Indices, before: Array, after: Array
+    ) -> int:
+        """Sweep on all steps; return the number of pieces, of which some may have had no room.
+
+        Parameters
+        ----------
+        parent, vertices : tree of all polylines, see `PolylineStack.run`.
+        tops : vertex of the load point before each step, shape (n,).
+        before, after : normal and tangential coordinate before and after each step, shape (2, n).
+        """
+        for i in range(len(tops)):
+            x, y = before[0, i], before[1, i]
+            x_end, y_end = after[0, i], after[1, i]
+            if x <= 0 and x_end <= 0:
+                continue
+            # Contact begins, or ends, where the straight step crosses normal coordinate zero.
+            if x <= 0:
+                y += (y_end - y) * x / (x - x_end)
+                x = 0.0
+            elif x_end <= 0:
+                y_end = y + (y_end - y) * x / (x - x_end)
+                x_end = 0.0
+            self.step = i
+            self.down, self.aside = x - x_end, y - y_end
+            self._descend(parent, vertices, tops[i])
+            # Springs that come into contact slip at once where the path is steeper than friction.
+            if self.down < 0 and abs(self.aside) > -self.down:
+                self._part(x, self.down, self.aside, -self.down, -self.aside)
+        return self.count
+
+    def _descend(self, parent: Indices, vertices: Array, at: int) -> None:
+        """Sweep the segments below a vertex, the load point, on one step."""
+        f_end = self.down + self.aside
+        b_end = self.down - self.aside
         n = 0.0
         s = 0.0
         part = 1.0
-        at = tops[i]
         below = parent[at] if at >= 0 and max(f_end, b_end) > 0 else -1
         while below >= 0:
             span = max(vertices[0, at] - vertices[0, below], 0.0)
@@ -251,16 +287,68 @@ def sweep(parent: Indices, vertices: Array, tops: Indices, fallen: Array, swept:
                 part = (f_end - f) / (span + turn) if f < f_end else 0.0
                 other = (b_end - b) / (span - turn) if b < b_end else 0.0
                 part = min(max(part, other), 1.0)
-            if count < room:
-                swept[0, count], swept[1, count] = i, vertices[0, below] + (1 - part) * span
-                swept[2, count], swept[3, count] = n, s
-                swept[4, count], swept[5, count] = part * span, part * turn
-            count += 1
+            low = vertices[0, below] + (1 - part) * span
+            self._part(low, n, s, part * span, part * turn)
             n += part * span
             s += part * turn
             at = below
             below = parent[at] if part == 1 else -1
-    return count
+
+    def _part(self, low: float, n: float, s: float, span: float, turn: float) -> None:
+        """Divide a part at the breaks of M: at P', and where the path of P crosses it.
+
+        Parameters
+        ----------
+        low : normal coordinate of the lower end.
+        n, s : distances in normal coordinate and anchor from P down to the upper end.
+        span, turn : those from the upper to the lower end, free of cancellation.
+        """
+        upper = s * self.down - n * self.aside
+        lower = upper + (turn * self.down - span * self.aside)
+        at_end = (self.down - n) / span if span > 0 else 0.0
+        crossing = upper / (upper - lower) if upper * lower < 0 else 0.0
+        first = min(max(min(at_end, crossing), 0.0), 1.0)
+        second = min(max(at_end, crossing, 0.0), 1.0)
+        self._piece(low, n, s, span, turn, 0.0, first)
+        self._piece(low, n, s, span, turn, first, second)
+        self._piece(low, n, s, span, turn, second, 1.0)
+
+    def _piece(
+        self, low: float, n: float, s: float, span: float, turn: float, start: float, stop: float
+    ) -> None:
+        """List a part, from one share of its length to another, with the coefficients of M."""
+        length = (stop - start) * span
+        if length <= 0:
+            return
+        if self.count < self.pieces.shape[1]:
+            self.pieces[0, self.count] = self.step
+            self.pieces[1, self.count] = low + (1 - stop) * span
+            self.pieces[2, self.count] = length
+            n, s = n + start * span, s + start * turn
+            turn *= stop - start
+            # Cross products of P' and both ends: positive where b is exceeded first.
+            upper = s * self.down - n * self.aside
+            lower = (s + turn) * self.down - (n + length) * self.aside
+            backward = self.down + self.aside <= 0 or (
+                self.down > self.aside and upper + lower >= 0
+            )
+            sign = -1.0 if backward else 1.0
+            fall = self.down + sign * self.aside
+            before = max(-sign * upper / fall, 0.0)
+            high_friction = (before + max(n - self.down, 0.0)) / 2
+            high = self._fall(n, fall - (n + sign * s), before * fall)
+            n, s = n + length, s + turn
+            before = max(-sign * lower / fall, 0.0)
+            low_friction = (before + max(n - self.down, 0.0)) / 2
+            low = self._fall(n, fall - (n + sign * s), before * fall)
+            self.pieces[3, self.count] = low * low_friction
+            self.pieces[4, self.count] = (low * high_friction + high * low_friction) / 2
+            self.pieces[5, self.count] = high * high_friction
+        self.count += 1
+
+    def _fall(self, n: float, in_contact: float, apart: float) -> float:
+        """Return the decrease of the sum; the contact of springs above P' ends before the step."""
+        return apart / self.down if n < self.down else max(in_contact, 0.0)
 
 
 def accumulate(parent: Indices, step: Array, total: Array) -> None:

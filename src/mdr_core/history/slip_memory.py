@@ -166,7 +166,7 @@ def follow(start: Polyline, points: LoadPoints) -> tuple[VertexTree, Polyline]:
     parent[:made], vertices[:, :made] = held.parent, held.vertices
     rows, stack = _stacked(start, top.size)
     made = stack.run(path, points.continues, number, parent, vertices, top)
-    line = Polyline(_polyline_on(stack, rows), *path[:, -1].tolist())
+    line = Polyline(read_only(rows[: stack.top + 1].copy()), *path[:, -1].tolist())
     return VertexTree(parent[:made], vertices[:, :made], top, held.start, path), line
 
 
@@ -174,7 +174,8 @@ def moved(line: Polyline, normal: float, tangential: float) -> tuple[Polyline, i
     """Return the polyline after one straight step, and the number of unchanged vertices."""
     rows, stack = _stacked(line, 1)
     stack.move(normal, tangential, continues=False)
-    return Polyline(_polyline_on(stack, rows), normal, tangential), stack.changed
+    vertices = read_only(rows[: stack.top + 1].copy())
+    return Polyline(vertices, normal, tangential), stack.changed
 
 
 def moved_each(lines: Polylines, load_points: Array) -> Polylines:
@@ -202,11 +203,6 @@ def _stacked(line: Polyline, steps: int) -> tuple[Array, kernel.PolylineStack]:
     rows = np.empty((size + _VERTICES * steps, COLUMNS))
     rows[:size] = line.vertices
     return rows, kernel.PolylineStack(rows, size - 1, line.normal, line.tangential)
-
-
-def _polyline_on(stack: kernel.PolylineStack, rows: Array) -> Array:
-    """Return the vertices of the polyline on a stack."""
-    return read_only(rows[: stack.top + 1].copy())
 
 
 def separated(normal: float, tangential: float) -> Polyline:

@@ -15,6 +15,7 @@ from mdr_core.errors import InputError
 from mdr_core.history import load_path, slip_memory
 from mdr_core.history.contact_state import ContactState, Edge, unloaded
 from mdr_core.history.load_path import UNLOADED, SampledPath, SavedState
+from mdr_core.history.slip_layout import NORMAL
 from mdr_core.history.slip_memory import Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.materials import Material
@@ -140,7 +141,8 @@ class LoadHistory(validity.ResultsOverLoads):
     @cached_property
     def state(self) -> ContactState:
         """State of the contact at the end of the history."""
-        line, (vertices, last) = self.results.last, self.results.last_vertices
+        vertices, line = self.results.end
+        last = vertices.tree.last
         force = vertices.conjugate
         if self.path.over_forces:
             line = self._over_depths(vertices.conjugate_step[last[1:]], line)
@@ -159,7 +161,7 @@ class LoadHistory(validity.ResultsOverLoads):
             float(self.path.tangential[-1]),
             float(self.dissipated_energy[-1]),
             str(self.regime[-1]),
-            load_path.saved(self.results.last),
+            self.results.end.line.vertices[:-1, :NORMAL].tolist(),
         )._asdict()
 
     def _over_depths(self, span: Array, line: Polyline) -> Polyline:
@@ -296,7 +298,8 @@ def solve(
             raise InputError(_BEGIN, not_negative("normal_force"))
     path = load_path.build(start, pressed, pushed, samples_per_step, begin)
     _require_solvable(path)
-    results = StepResults(path.moments, path.load_points, path.at_start, begin.regime)
+    at_start = begin.restored(*path.coordinates[:, 0].tolist())
+    results = StepResults(path.moments, path.load_points, at_start, begin.regime)
     return LoadHistory(path, e_star, results)
 
 

@@ -160,7 +160,7 @@ def decides_regime(codes: Indices, normal: Array, deeper: Array, further: Array)
     return (codes < 2) | (np.abs(further) - deeper > rounding)
 
 
-class _Block(NamedTuple):
+class Block(NamedTuple):
     """Results at the vertices of a range of steps, and the polyline after these steps."""
 
     vertices: TractionVertices
@@ -216,35 +216,25 @@ class StepResults:
         last = np.maximum.accumulate(np.where(known, np.arange(codes.size), -1))
         return np.maximum(np.where(last < 0, before, codes[last]), codes > 0)
 
-    @property
-    def last(self) -> Polyline:
-        """Polyline after the last step, over normal coordinates."""
-        return self._end.line
-
-    @property
-    def last_vertices(self) -> tuple[TractionVertices, Indices]:
-        """Results at the vertices of the last block, and the indices of the last polyline."""
-        vertices = self._end.vertices
-        return vertices, vertices.tree.last
-
     @cached_property
-    def _end(self) -> _Block:
+    def end(self) -> Block:
+        """Last block, with the polyline after all steps."""
         return deque(self._blocks, maxlen=1)[0]
 
     @property
-    def _blocks(self) -> Iterable[_Block]:
+    def _blocks(self) -> Iterable[Block]:
         return self._kept if self.points.normal.size <= _KEPT else self._follow()
 
     @cached_property
-    def _kept(self) -> list[_Block]:
+    def _kept(self) -> list[Block]:
         return list(self._follow())
 
-    def _follow(self) -> Iterator[_Block]:
+    def _follow(self) -> Iterator[Block]:
         line = self.start
         for block in in_blocks(self.points.normal.size):
             points = LoadPoints._make(row[block] for row in self.points)
             tree, line = slip_memory.follow(line, points)
-            yield _Block(TractionVertices(self.moments, tree), line)
+            yield Block(TractionVertices(self.moments, tree), line)
 
     def _per_step(self, result: Callable[[TractionVertices], Numbers]) -> Numbers:
         """Return a result of every step, zero in blocks without contact."""
