@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 from scipy.linalg import qr_multiply, solve_triangular
 from scipy.optimize import nnls
+from scipy.special import stdtrit
 
 from mdr_core.doubles import ADJACENT, EPS
 from mdr_core.errors import InputError
@@ -49,6 +50,8 @@ _UNSEEN: Final = 1e-8
 _LEAST_SIGMA: Final = 32 * ADJACENT
 # Lowest g'/x, over that of the paraboloid through the last point: g increases strictly.
 _FLOOR: Final = 1e-9
+# Quantile of the error of the data: two standard deviations of a normal distribution.
+_QUANTILE: Final = 0.97725
 # Deviation from the points, root mean square over the height, from which the shape has no contact
 # area that is a single disc.
 _NO_DISC: Final = 0.025
@@ -147,9 +150,10 @@ def _spread(
 ) -> tuple[Array, float, int]:
     """Return possible deviations of the coefficients (columns, n), odds, and the deciding point.
 
-    The deviations are two standard deviations of the posterior of all models and weights, and the
-    influence of each point times the excess of its residual, when it is left out, over the
-    expected one. The odds are those of the tip, sharp or smooth, that was not chosen.
+    The deviations are those of the posterior of all models and weights, to two standard deviations
+    or, where the points tell the noise, to Student's quantile; and for each point twice its
+    influence times the excess of its residual, when it is left out, over the expected one. The odds
+    are those of the tip, sharp or smooth, that was not chosen.
 
     Parameters
     ----------
@@ -162,7 +166,7 @@ def _spread(
     odds = [np.exp((least[bool(each.jumps[0])] - each.score) / 2) for each in tried]
     total, center = sum(each.sum() for each in odds), best.mean(np.array([best.at]))
     left_out = best.excess()
-    parts, rival = [left_out], 0.0
+    parts, rival = [2 * left_out], 0.0
     if excess > 1:
         at = np.array([best.at])
         noisier = best.weights.searchsorted(best.weights[at] * excess**2, side="right") - 1
@@ -174,9 +178,9 @@ def _spread(
         if likely.size:
             share = own[likely] / total
             off = each.mean(likely) - center
-            parts += [each.posterior(likely, share), off * np.sqrt(share)]
+            parts += [each.posterior(likely, share), 2 * off * np.sqrt(share)]
     # Few points leave a jump open without bound, but no admissible slope is that large.
-    spread = 2 * np.hstack(parts)
+    spread = np.hstack(parts)
     spread *= _LARGEST / np.abs(spread).max(axis=0).clip(_LARGEST)
     spread = np.asarray(np.linalg.qr(spread.T, mode="r")).T
     return spread, float(rival), int(np.argmax(np.linalg.norm(left_out, axis=0)))
@@ -279,11 +283,14 @@ class _Model:
         self.weights = max(float(np.square(self.size).max(initial=0.0)), _UNSEEN**2) * _WEIGHTS
         share = self.weights[:, None] / np.add.outer(self.weights, np.square(self.size))
         whole = share @ np.square(self.part) + np.square(self.rest).sum()
-        variance = 0 * whole + max(uncertainty or 0.0, _LEAST_SIGMA) ** 2
+        variance = least = 0 * whole + max(uncertainty or 0.0, _LEAST_SIGMA) ** 2
+        freedom = max(self.left_over, 1)
         if uncertainty is None:
-            least = max(basis.points.rounding, _LEAST_SIGMA)
-            variance = np.maximum(whole / max(self.left_over, 1), least**2)
+            least = max(basis.points.rounding, _LEAST_SIGMA) ** 2
+            variance = np.maximum(whole / freedom, least)
         self.sigma = np.sqrt(variance)
+        # A noise that the points tell is itself uncertain.
+        self.deviations = np.where(variance > least, stdtrit(freedom, _QUANTILE), 2.0)
         self.score = (
             whole / variance
             + self.left_over * np.log(2 * np.pi * variance)
@@ -328,9 +335,9 @@ class _Model:
         return (self.smooth @ self.fitted)[:, None] + self.rough @ bent.T
 
     def posterior(self, at: Indices, share: Array) -> Array:
-        """Standard deviations of the coefficients, for a mixture of weights. Source: wahba."""
+        """Possible deviations of the coefficients, for a mixture of weights. Source: wahba."""
         size2 = np.append(np.square(self.size), np.zeros(self.open.shape[1]))
-        variance = np.square(self.sigma[at]) * share
+        variance = np.square(self.deviations[at] * self.sigma[at]) * share
         bent = np.sqrt(variance @ (1 / np.add.outer(self.weights[at], size2)))
         smooth = np.sqrt(variance.sum()) * self.smooth
         return np.hstack([smooth, np.hstack([self.rough, self.open]) * bent])
