@@ -1,8 +1,8 @@
 """Segments of a measured curve in the order of time: loading, hold and unloading.
 
-A hold is a run of points at which force or depth is constant, while the other one creeps, relaxes
-or drifts, and at whose ends it is left at once. The other points go by the direction of the depth.
-Durations are numbers of points where times are not known.
+A hold is a run of points in which force or depth is constant while the other quantity creeps,
+relaxes or drifts, and at whose ends the constant quantity changes abruptly. All other points are
+classified by the direction of the depth. Durations are numbers of points where times are unknown.
 """
 
 from typing import Any, Final, NamedTuple
@@ -14,23 +14,33 @@ from mdr_core import residuals
 from mdr_core.doubles import EPS, TINY
 from mdr_core.typing import Array, Flags
 
-# Windows that are searched, over the duration of the curve, and the fewest points of one.
-_WINDOWS, _FEWEST = np.geomspace(0.05, 0.4, 7), 8
-# Rates over that of the whole range in the whole duration, up to which a quantity is constant, and
-# up to which the other one creeps. The latter is that of an approach.
-_CONSTANT, _SLOW = 0.05, 1.0
-# Standard deviations of the noise that must not hide a drift, and within which the points of a hold
-# are at its level.
-_CHANCE, _LEVEL = 2.0, 3.0
-# Change beyond an end of a hold, as the mean over half its duration: this part of the duration, or
-# this part of the range. A crest of a sine changes by less.
-_SHARP, _STEP = 0.25, 0.04
-# Force over the range of forces up to which there is hardly any contact: a slow approach has
-# constant forces too.
+# Lengths of the searched windows, over the duration of the curve.
+_WINDOWS: Final = np.geomspace(0.05, 0.4, 7)
+# Smallest number of points in a window, and of a line of drift.
+_FEWEST: Final = 8
+# Largest rate of a constant quantity, over its range divided by the duration.
+_CONSTANT: Final = 0.05
+# Largest rate of the other quantity, over its range divided by the duration.
+_SLOW: Final = 1.0
+# Standard errors of a mean over a third of a window that must not hide a drift.
+_CHANCE: Final = 2.0
+# Deviation of the points of a hold from its level, in standard deviations.
+_LEVEL: Final = 3.0
+# Smallest mean change beyond an end of a hold, over its duration; a crest of a sine changes less.
+_SHARP: Final = 0.25
+# Change beyond an end of a hold, over the range, that always suffices.
+_STEP: Final = 0.04
+# Depths over their range at which there is no contact yet, and the difference from the force there,
+# over the range of forces, up to which there is hardly any: the forces of an approach are constant
+# too.
+_APPROACH: Final = 0.05
 _LOADED: Final = 0.05
-# Force over the range of forces up to which a hold shows the drift; part of the hold at each end
-# that is left out; and the largest correlation of neighbours that is taken into account.
-_LOW, _END, _ALIKE = 0.5, 0.1, 0.99
+# Largest force of a hold that shows the drift, above the least force, over the range.
+_LOW: Final = 0.5
+# Part of a hold that is omitted at each end.
+_END: Final = 0.1
+# Upper limit of the correlation of neighbouring residuals.
+_ALIKE: Final = 0.99
 # Standard deviation over the median of the absolute values of normal errors.
 _BY_MEDIAN: Final = 1.4826
 
@@ -72,7 +82,7 @@ def _runs(values: NDArray[Any]) -> list[tuple[int, int]]:
 def _held(depth: Array, force: Array, time: Array) -> Flags:
     """Return True for points of holds."""
     y, x, t = ((each - each.min()) / np.ptp(each) for each in (force, depth, time))
-    loaded = _LOADED + _LEVEL * _noise(y)
+    before, loaded = np.median(y[x <= _APPROACH]), _LOADED + _LEVEL * _noise(y)
     held = np.zeros(t.size, dtype=bool)
     for constant, other in ((y, x), (x, y)):
         noise = _noise(constant)
@@ -80,19 +90,20 @@ def _held(depth: Array, force: Array, time: Array) -> Flags:
         for first, last in _runs(found):
             if found[first]:
                 run = _at_level(constant, first, last, noise)
-                held[run] |= np.mean(y[run]) > loaded and _is_left_at_once(constant, t, run)
+                touches = abs(np.mean(y[run]) - before) > loaded
+                held[run] |= touches and _ends_abruptly(constant, t, run)
     return held
 
 
 def _noise(y: Array) -> float:
-    """Return the standard deviation of the errors, by second differences, which have 6 times it."""
+    """Return the standard deviation of the noise; second differences have 6 times its variance."""
     return _BY_MEDIAN * float(np.median(np.abs(np.diff(y, 2)))) / 6**0.5 if y.size > 2 else 0.0
 
 
 def _in_windows(constant: Array, other: Array, t: Array, noise: float) -> Flags:
     """Return True for points of windows in which a quantity is constant, and the other one slow.
 
-    The means of the thirds of a window show a drift, if they are those of enough points.
+    The means over the thirds of a window differ by a drift; a window needs enough points for this.
     """
     sums = [np.append(0.0, np.cumsum(each)) for each in (other, t, t * t, other * t)]
     total = np.append(0.0, np.cumsum(constant))
@@ -128,7 +139,7 @@ def _at_level(constant: Array, first: int, last: int, noise: float) -> slice:
     )
 
 
-def _is_left_at_once(constant: Array, t: Array, run: slice) -> bool:
+def _ends_abruptly(constant: Array, t: Array, run: slice) -> bool:
     """Return True if a quantity changes at the ends of a run, and not gradually."""
     level, half = np.mean(constant[run]), (t[run][-1] - t[run][0]) / 2
     before = constant[np.searchsorted(t, t[run][0] - half) : run.start]
@@ -149,8 +160,8 @@ class Drift(NamedTuple):
 def drift(depth: Array, force: Array, time: Array, kinds: NDArray[np.str_]) -> Drift | None:
     """Return the drift in the last hold at a constant low force, None without one.
 
-    In a hold at a high force the sample creeps too, and at a constant depth nothing shows a drift.
-    The points next to its ends may belong to the branches.
+    In a hold at a high force the sample creeps too, and a depth that is constant to the last digit
+    is controlled and shows no drift. The points next to its ends may belong to the branches.
     """
     for kind, first, last in reversed(segments(kinds)):
         if kind != "hold":
@@ -159,7 +170,7 @@ def drift(depth: Array, force: Array, time: Array, kinds: NDArray[np.str_]) -> D
         end = int(_END * (run.stop - run.start)) + 1
         t, x, y = (each[run][end:-end] for each in (time, depth, force))
         least, most = force.min(), np.ptp(force)
-        if t.size < _FEWEST or np.ptp(t) == 0:
+        if t.size < _FEWEST or np.ptp(t) == 0 or np.ptp(x) == 0:
             continue
         found, relaxation = _line(t, x), _line(t, y)
         is_constant = abs(relaxation.rate) <= max(
@@ -173,8 +184,8 @@ def drift(depth: Array, force: Array, time: Array, kinds: NDArray[np.str_]) -> D
 def _line(t: Array, y: Array) -> Drift:
     """Return the slope of the line of least squares.
 
-    Its error is that of white noise, enlarged by the correlation r of neighbouring residuals by
-    ((1 + r)/(1 - r))^(1/2), with the bias of r in short lists.
+    The standard error of white noise is multiplied by ((1 + r)/(1 - r))^(1/2), with the correlation
+    r of neighbouring residuals corrected for its bias in short lists.
     """
     t, y = t - t.mean(), y - y.mean()
     square = float(t @ t)

@@ -89,7 +89,7 @@ class Precision:
         return np.asarray(self.unit_rows @ self.unit_rows.T)
 
     def changes(self, curve: Array) -> Array:
-        """Return the changes of the parameters with a change of the curve, to first order."""
+        """Return the first-order changes of the parameters due to a change of the curve."""
         return np.asarray(self.inverse @ (self.q.T @ curve) / self.scale)
 
     def error(self, relative: float, residual: Array, curve: Array) -> float:
@@ -129,8 +129,9 @@ def minimum(
         change = np.asarray(np.linalg.lstsq(slope, -residual(x))[0], dtype=float)
         return change, float(np.linalg.norm(slope @ change))
 
-    # The search ends where rounding hides how squares fall, about 1e-8 from the minimum. Steps of
-    # Gauss and Newton reach it from there; each is kept if the next one is less than half as long.
+    # The search stops about 1e-8 from the minimum, where rounding errors hide the decrease of the
+    # sum of squares. Gauss-Newton steps refine it; each is kept if the next is less than half as
+    # long.
     x, (change, length) = found.x, step(found.x)
     while ((bounds[0] <= x + change) & (x + change <= bounds[1])).all():
         following, remaining = step(x + change)

@@ -180,13 +180,13 @@ def places_of(
 
 
 def time_of(titles: Sequence[Title], numeric: Sequence[int]) -> int | None:
-    """Return the index of the column of time, if there is one with a unit."""
+    """Return the index of the best column of time that has a unit, or None."""
     ranks = [(_rank(titles[i], "time"), i) for i in numeric if titles[i].unit]
     return min(((rank, i) for rank, i in ranks if rank is not None), default=(0, None))[1]
 
 
 def segments_of(rows: Sequence[Sequence[str]], numeric: Sequence[int]) -> list[str] | None:
-    """Return the kind of segment of each row by the first column that holds nothing else.
+    """Return the kind of segment of each row, from the first column of such words only.
 
     Empty cells continue the segment above.
     """

@@ -90,7 +90,7 @@ class ParsedFile(NamedTuple):
     lines: list[int]
     """Line of each point."""
     time: list[float] | None = None
-    """Times of a curve from its first point [s], if a column has their unit and does not fall."""
+    """Times of a curve from its first point [s], of a non-decreasing column with a unit."""
     segments: list[str] | None = None
     """Kind of the segment of each point of a curve, if a column tells it."""
 

@@ -86,7 +86,7 @@ def test_errors_name_the_curve_or_the_option(
     assert message in capsys.readouterr().err
 
 
-def test_times_of_a_curve_are_those_of_its_drift(tmp_path: Path) -> None:
+def test_drift_rate_option_uses_times_of_file(tmp_path: Path) -> None:
     curve, result = tmp_path / "curve.csv", tmp_path / "fit.json"
     rows = "".join(f"{i / 60:.9f};{11 * i - 10};{force}\n" for i, force in enumerate(FORCES))
     curve.write_text("t [min];d [nm];F [µN]\n" + rows, "utf-8")

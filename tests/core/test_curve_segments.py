@@ -1,4 +1,4 @@
-"""A hold is told from the branches of a curve, and the drift that it shows is subtracted."""
+"""Holds are distinguished from branches, and the drift in a hold is subtracted."""
 
 from typing import Any
 
@@ -36,7 +36,7 @@ def drawn(random: np.random.Generator, *, hold: bool) -> tuple[Array, Array, Arr
 
 
 @pytest.mark.parametrize("is_timed", [False, True])
-def test_holds_are_found_and_only_they(*, is_timed: bool) -> None:
+def test_only_holds_are_reported_as_holds(*, is_timed: bool) -> None:
     random, found, missed = np.random.default_rng(201), [], []
     for _ in range(200):
         depth, force, held = drawn(random, hold=True)
@@ -51,11 +51,36 @@ def test_holds_are_found_and_only_they(*, is_timed: bool) -> None:
     assert np.mean(missed) <= 0.01
 
 
-def test_slow_approach_and_crest_are_no_holds() -> None:
+def test_slow_approach_or_crest_is_not_a_hold() -> None:
     depth = np.r_[np.linspace(-0.1, 0, 100), np.linspace(0, 1, 50), np.linspace(1, 0, 50)]
     assert "hold" not in phases(depth, np.maximum(depth, 0) ** 1.5)
     crest = np.sin(np.linspace(0, np.pi, 500))
     assert "hold" not in phases(crest, crest**1.5)
+
+
+@pytest.mark.parametrize("noise", [0.0, 3e-3])
+@pytest.mark.parametrize("count", [40, 200])
+@pytest.mark.parametrize("direction", [1, -1])
+def test_baseline_of_one_adhesive_branch_is_not_a_hold(
+    direction: int, count: int, noise: float
+) -> None:
+    """Before snap-in, or after pull-off, the force is constant and above the least one."""
+    depth = np.linspace(-1, 1, count)
+    jump = 0.0 if direction > 0 else -0.2
+    force = np.where(depth > jump, 4 / 3 * depth.clip(0) ** 1.5 - 0.3, 0)
+    force = force + noise * np.random.default_rng(4).standard_normal(count)
+    kinds = phases(depth[::direction], force[::direction])
+    assert set(kinds.tolist()) == {"loading" if direction > 0 else "unloading"}
+
+
+def test_depth_that_is_controlled_shows_no_drift() -> None:
+    random = np.random.default_rng(0)
+    parts = [(0, 1, 60), (1, 0.25, 50), (0.25, 0.25, 40), (0.25, -0.1, 30)]
+    depth = np.concatenate([np.linspace(*part) for part in parts])
+    force = 4 / 3 * depth.clip(0) ** 1.5 + 1e-3 * random.standard_normal(depth.size)
+    kinds = phases(depth, force)
+    assert "hold" in kinds
+    assert drift(depth, force, np.arange(float(depth.size)), kinds) is None
 
 
 def indented(random: np.random.Generator, rate: float) -> dict[str, Array]:
@@ -111,7 +136,7 @@ def test_error_of_the_rate_is_part_of_all_standard_errors() -> None:
     assert np.linalg.eigvalsh(found.correlation).min() >= 0
 
 
-def test_loading_takes_in_no_points_of_a_hold() -> None:
+def test_loading_segment_excludes_hold_points() -> None:
     curve = indented(np.random.default_rng(204), 0.0)
     assert 78 <= solved(curve).indentation_depth.size <= 81
     kinds = phases(curve["indentation_depth"], curve["normal_force"])
@@ -126,7 +151,7 @@ def test_hold_at_the_largest_force_shows_creep_and_no_drift() -> None:
     kinds = phases(depth, force, time)
     assert "hold" in kinds
     assert drift(depth, force, time, kinds) is None
-    with pytest.raises(mdr.InputError, match="must be hold, of a curve with one") as refused:
+    with pytest.raises(mdr.InputError, match="the curve must have a hold") as refused:
         solved(curve, drift="hold")
     assert refused.value.path == ("drift",)
 
@@ -144,7 +169,7 @@ def test_hold_at_the_largest_force_shows_creep_and_no_drift() -> None:
         ({"drift": "rest"}, ("drift",)),
     ],
 )
-def test_wrong_drifts_are_refused(changed: dict[str, Any], path: tuple[str | int, ...]) -> None:
+def test_invalid_drift_is_rejected(changed: dict[str, Any], path: tuple[str | int, ...]) -> None:
     curve = indented(np.random.default_rng(206), 0.0) | changed
     with pytest.raises(mdr.InputError) as refused:
         solved(curve)

@@ -174,6 +174,7 @@ def test_estimate_holds_for_random_impacts(seed: int) -> None:
         assert not [notice for notice in hit.warnings if notice.code == "accuracy"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["paraboloid", "cone"])
 def test_looser_tolerance_takes_less_work_and_a_tighter_one_errs_less(
     kind: str, monkeypatch: pytest.MonkeyPatch

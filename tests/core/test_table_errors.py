@@ -29,7 +29,7 @@ FLOOR = 1e-12
 
 
 def compared(table: Table) -> tuple[Array, Array, set[str]]:
-    """Larger error of depth and force over the answer, the stated one, and codes of warnings."""
+    """Return the larger relative error of depth and force, the stated one, and warning codes."""
     a = PARTS * np.abs(table.r).max()
     a = a[a > 1.001 * table.body.first_radius]
     profile = Tabulated(table.r, table.f, breaks=table.breaks, uncertainty=table.uncertainty)

@@ -93,7 +93,7 @@ def test_holds_times_and_their_drift_are_listed(client: Client) -> None:
     assert 0 < document["drift_rate_error"][0] < 1e-6
 
 
-def test_segments_of_a_file_go_before_those_of_the_depth(client: Client) -> None:
+def test_segment_column_has_priority_over_depth_direction(client: Client) -> None:
     text = "d [nm];F [mN];Segment\n0;0;Load\n1;1;Load\n2;2;Hold\n2;1;\n1;0;Unload\n"
     _, document = read(client, text)
     assert document["segments"] == [

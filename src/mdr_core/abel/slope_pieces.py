@@ -28,9 +28,9 @@ from mdr_core.typing import Array
 _FAR: Final = 2.0
 # Nodes there: they leave 1e-11 of the roughest piece, and 1e-16 of a smooth one.
 _FAR_NODES, _FAR_WEIGHTS = composite_rule(8)
-# Rules of a piece next to r, beyond it (1) and within (-1), where x = -r is nearer in w.
+# Rules for a piece next to r: beyond r (1), and within r (-1), where the pole x = -r is nearer.
 _NEAR: Final = {1: composite_rule(12), -1: composite_rule(16)}
-# Sorted radii whose far pieces are taken together.
+# Number of sorted radii whose far pieces are merged.
 _BLOCK: Final = 64
 
 
@@ -59,7 +59,7 @@ def integrals(
     x = (left[:, None] + length[:, None] * _FAR_NODES).ravel()
     weighted = sparse.diags((length[:, None] * _FAR_WEIGHTS).ravel()) @ slope(x)
     inner, outer = (left, left + length)[::sign]
-    # A piece is far from the radii up to its limit, in this order.
+    # In this order of radii a piece is far up to its limit.
     limit = sign * inner - _FAR * length
     limits, squares = limit.repeat(_FAR_NODES.size), sign * (x * x)
     total = np.zeros((r.size, *weighted.shape[1:]))

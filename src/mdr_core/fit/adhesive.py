@@ -98,7 +98,9 @@ def _touching(curve: Model) -> tuple[Model, Parameters]:
     it open in noise, as offset, adhesion and contact point compensate.
     """
     order = np.argsort(curve.depth, kind="stable")
-    depth, force, drifted = (each[order] for each in (curve.depth, curve.force, curve.drifted))
+    depth, force, drift_error = (
+        each[order] for each in (curve.depth, curve.force, curve.drift_error)
+    )
     least = int(np.argmin(force)) + 1
     curve.require_points(depth.size - least)
 
@@ -108,7 +110,7 @@ def _touching(curve: Model) -> tuple[Model, Parameters]:
             curve,
             depth=depth[used],
             force=force[used],
-            drifted=drifted[used],
+            drift_error=drift_error[used],
             touches=used >= count,
         )
 

@@ -55,8 +55,8 @@ class Model:
     noise: float | None
     """Known standard deviation of the forces [force]."""
     body_thickness: float | None
-    drifted: Array
-    """Changes of the depths with the rate of drift, by its standard error [length]."""
+    drift_error: Array
+    """Standard error of the subtracted drift at each point [length]."""
 
     @property
     def free(self) -> int:

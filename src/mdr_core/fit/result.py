@@ -58,9 +58,9 @@ class Fit(LeastSquaresFit):
     youngs_modulus_error: float | None = None
     """Standard deviation of E by that of E* [pressure]."""
     drift_rate: float | None = None
-    """Drift of the depths that is subtracted [length/time], None without one."""
+    """Subtracted drift rate of the depths [length/time], None without one."""
     drift_rate_error: float | None = None
-    """Its standard deviation, which those of the parameters contain [length/time]."""
+    """Its standard deviation, included in the standard errors [length/time]."""
     quantities: ClassVar[tuple[str, ...]] = (
         *("fit", "e_star", "contact_point", "force_offset", "work_of_adhesion"),
         *("standard_errors", "correlation", "noise", "misfit"),
@@ -119,12 +119,12 @@ def result(model: Model, found: Parameters) -> Fit:
 def _errors(
     model: Model, found: Parameters, precision: Precision, noise: float
 ) -> tuple[Array, Array]:
-    """Return the standard deviations and the correlation by noise, and by the rate of a drift."""
+    """Return the standard errors and correlation due to noise and the error of the drift rate."""
     errors, correlation = noise * precision.deviations, precision.correlation
-    if not model.drifted.any():
+    if not model.drift_error.any():
         return errors, correlation
-    _, by_place = replace(model, fit=("contact_point",)).at(found)
-    by_drift = precision.changes(by_place[:, 0] * model.drifted)
+    _, by_contact_point = replace(model, fit=("contact_point",)).at(found)
+    by_drift = precision.changes(by_contact_point[:, 0] * model.drift_error)
     both = np.hypot(errors, by_drift)
     shares = np.outer(errors / both, errors / both), np.outer(by_drift / both, by_drift / both)
     correlation = correlation * shares[0] + shares[1]

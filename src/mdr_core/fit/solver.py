@@ -36,12 +36,12 @@ _SEGMENTS: Final = "loading", "unloading"
 
 
 class _Curve(NamedTuple):
-    """Measured curve, without its drift."""
+    """Measured curve after the subtraction of its drift."""
 
     depth: Array
     force: Array
-    drifted: Array
-    """Change of the depths by the standard error of the drift [length]."""
+    drift_error: Array
+    """Standard error of the subtracted drift at each point [length]."""
     kinds: NDArray[np.str_]
     """See `phases`."""
 
@@ -87,11 +87,11 @@ def solve(
     indenter : the other body, of E_i*.
     layer : elastic layer that is the sample, with Poisson's ratio on a bonded base; not with
         adhesion.
-    time : times of the points, which do not fall, shape (k,).
-    drift : "hold" to subtract the drift of the depths that the last hold at a constant low force
-        shows, by a line of least squares; rate times time is subtracted.
-    drift_rate, drift_rate_error : drift to subtract in its place [length/time], and its standard
-        deviation, 0 by default.
+    time : times of the points, non-decreasing, shape (k,). The drift is zero at time 0.
+    drift : "hold" to subtract the drift of the depths: the slope of the least-squares line in the
+        last hold at a constant force in the lower half of the range, times the time.
+    drift_rate, drift_rate_error : drift to subtract instead of that of a hold [length/time], and
+        its standard deviation, 0 by default.
 
     Returns
     -------
@@ -119,7 +119,7 @@ def solve(
         raise InputError(("indentation_depth",), "must hold different depths")
     known_drift = drift, drift_rate, drift_rate_error
     corrected, subtracted = _without_drift(curve, time, *known_drift)
-    depth, force, drifted = _branch(corrected, segment)
+    depth, force, drift_error = _branch(corrected, segment)
     unknown = [name for name in fit if name not in PARAMETERS]
     if unknown or not fit or len(set(fit)) < len(fit):
         raise InputError(("fit",), f"must hold some of {', '.join(PARAMETERS)}, each once")
@@ -142,7 +142,7 @@ def solve(
         layer = replace(layer, poissons_ratio=poissons_ratio)
     on_layer = None if layer is None else _on_layer(profile, layer, depth, fit, body_thickness)
     touches = np.ones(depth.size, dtype=bool)
-    known = e_star, touches, on_layer, noise, body_thickness, drifted
+    known = e_star, touches, on_layer, noise, body_thickness, drift_error
     model = Model(profile, depth, force, tuple(fit), *known)
     is_adhesive = "work_of_adhesion" in fit
     found = adhesive.solve(model) if is_adhesive else result(model, model.best())
@@ -165,7 +165,7 @@ def _on_layer(
     if body_thickness is not None:
         raise InputError(("layer",), "and body_thickness exclude each other: give one of them")
     if profile.first_radius > LARGEST * layer.thickness:
-        detail = f"must be at least the radius of the flat face over {LARGEST:g}"
+        detail = f"must be at least 1/{LARGEST:g} of the radius of the flat face"
         raise InputError(("layer", "thickness"), detail)
     return DepthCurve.up_to(profile, layer, max(float(depth.max()), 2 * float(np.ptp(depth))))
 
@@ -203,10 +203,13 @@ def _without_drift(
     if time is not None:
         _, times = as_curve("depths", indentation_depth=depth, time=time)
         if np.any(falls := np.diff(times) < 0):
-            raise InputError(("time", int(falls.argmax()) + 1), "is before the one above")
+            raise InputError(
+                ("time", int(falls.argmax()) + 1),
+                "is less than the previous time: sort the points by time",
+            )
     kinds = phases(depth, force, times)
     if rate is None and error is not None:
-        raise InputError(("drift_rate_error",), "is that of a drift_rate: give both")
+        raise InputError(("drift_rate_error",), "needs drift_rate: give both or neither")
     if rate is None and drift is None:
         return _Curve(depth, force, np.zeros(depth.size), kinds), None
     if times is None:
@@ -215,27 +218,30 @@ def _without_drift(
     if rate is not None:
         if drift is not None:
             raise InputError(("drift_rate",), "and drift exclude each other: give one of them")
-        found = Drift(single(("drift_rate",), rate), single(("drift_rate_error",), error or 0.0))
+        uncertain = 0.0 if error is None else error
+        found = Drift(single(("drift_rate",), rate), single(("drift_rate_error",), uncertain))
         require_finite(("drift_rate",), np.asarray(found.rate))
         require_not_negative(("drift_rate_error",), np.asarray(found.error))
     elif drift == "hold":
         found = curve_segments.drift(depth, force, times, kinds)
     if found is None:
-        detail = "must be hold, of a curve with one at a constant force below half of the largest"
-        raise InputError(("drift",), f"{detail}; or give drift_rate")
+        detail = (
+            "must be hold, and the curve must have a hold at a constant force in the lower half"
+        )
+        raise InputError(("drift",), f"{detail} of its range: else give drift_rate")
     return _Curve(depth - found.rate * times, force, found.error * times, kinds), found
 
 
 def _branch(curve: _Curve, segment: str | None) -> tuple[Array, Array, Array]:
     """Return depths, forces and the effect of the drift of a branch, or an InputError."""
-    depth, force, drifted, kinds = curve
+    depth, force, drift_error, kinds = curve
     if segment is not None:
         if segment not in _SEGMENTS:
             raise InputError(("segment",), f"must be one of {', '.join(_SEGMENTS)}")
         used = kinds == segment
         if np.sum(used) < 2:
             raise InputError(("segment",), f"is not in the curve: there is no {segment}")
-        depth, force, drifted = depth[used], force[used], drifted[used]
+        depth, force, drift_error = depth[used], force[used], drift_error[used]
     # The force falls to a pull-off too, whose least force is farther from most forces than the
     # largest one.
     height, order = force - np.median(force), np.argsort(depth, kind="stable")
@@ -246,4 +252,4 @@ def _branch(curve: _Curve, segment: str | None) -> tuple[Array, Array, Array]:
             "the largest force lies at a small depth: reverse the sign of a separation or height"
         )
         raise InputError(("indentation_depth",), detail)
-    return depth, force, drifted
+    return depth, force, drift_error

@@ -101,24 +101,24 @@ def cycles(
     True
     """
     require_whole(("history", "count"), count)
-    pressed = {"indentation_depth": indentation_depth, "normal_force": normal_force}
-    pushed = {
+    normal_loads = {"indentation_depth": indentation_depth, "normal_force": normal_force}
+    tangential_loads = {
         "tangential_displacement": tangential_displacement,
         "tangential_force": tangential_force,
     }
-    normal, mean = only_one(("history", "normal"), pressed)
-    tangential, swing = only_one(("history", "tangential"), pushed)
+    normal, given_mean = only_one(("history", "normal"), normal_loads)
+    tangential, tangential_amplitude = only_one(("history", "tangential"), tangential_loads)
     amplitude = single(("history", "normal", "amplitude"), normal_amplitude)
     if samples_per_step is None:
         samples_per_step = default_samples(normal, tangential) if amplitude else 1
-    middle = single(("history", "normal", normal), mean)
-    if not 0 <= amplitude <= middle:
+    mean = single(("history", "normal", normal), given_mean)
+    if not 0 <= amplitude <= mean:
         raise InputError(("history", "normal", "amplitude"), "must lie between 0 and the mean")
     if count < 1:
         raise InputError(("history", "count"), "must be at least 1")
     phase = np.append([0.0, 1.0], np.tile([-1.0, 1.0], count))
-    turning = single(("history", "tangential", tangential), swing) * phase
-    loads: dict[str, Any] = {normal: middle + amplitude * phase, tangential: turning}
+    points = single(("history", "tangential", tangential), tangential_amplitude) * phase
+    loads: dict[str, Any] = {normal: mean + amplitude * phase, tangential: points}
     contact = profile, e_star, g_star, friction_coefficient
     history = solve(*contact, **loads, samples_per_step=samples_per_step)
     if history.rounding > UNRESOLVED:

@@ -1,4 +1,4 @@
-"""Work of friction on each step, from the parts of the polylines that the slip front sweeps.
+"""Work of friction on each step, from the pieces of the polyline that the slip front sweeps.
 
 On a step from P to P' the load point moves along a straight line. A spring slips from the moment at
 which it exceeds the load point in one of the sums, f or b, until the end of the step or the loss of
@@ -39,7 +39,7 @@ def dissipation(moments: IntervalMoments, tree: VertexTree) -> Array:
 
 
 def _work(moments: IntervalMoments, pieces: Array) -> Array:
-    """Return G* D/(mu E*)^2 of pieces, see `slip_kernel.SlipFront`, without their steps."""
+    """Return G* D/(mu E*)^2 of pieces; the rows are those of `SlipFront` without the step."""
     low, span, terms = pieces[0], pieces[1], pieces[2:]
     if moments.over_forces:
         # Prescribed forces do not exceed friction, so that work on the axis is rounding error.

@@ -49,7 +49,7 @@ cdef class SlipFront:
     cdef void _descend(
         self, Py_ssize_t[::1] parent, const double[:, :] vertices, Py_ssize_t at
     ) noexcept
-    cdef void _part(self, double low, double n, double s, double span, double turn) noexcept
+    cdef void _divide(self, double low, double n, double s, double span, double turn) noexcept
     @cython.locals(backward=bint)
     cdef void _piece(
         self, double low, double n, double s, double span, double turn, double start, double stop

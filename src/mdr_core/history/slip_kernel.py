@@ -218,11 +218,11 @@ class PolylineStack:
 
 
 class SlipFront:
-    """Slip front of straight load steps: pieces of the polyline that it sweeps, with their work.
+    """Slip front of straight load steps: swept pieces of the polyline, and their work.
 
     On a step from P to P' a place of the polyline slips as soon as it exceeds the load point in one
     of the sums f and b. The front moves down from P to where neither sum exceeds its value at P'.
-    Parts of segments are divided at the breaks of the work M, see `friction_work`.
+    Segments are divided into pieces at the breaks of the work M, see `friction_work`.
 
     Parameters
     ----------
@@ -267,7 +267,7 @@ class SlipFront:
             self._descend(parent, vertices, tops[i])
             # Springs that come into contact slip at once where the path is steeper than friction.
             if self.down < 0 and abs(self.aside) > -self.down:
-                self._part(x, self.down, self.aside, -self.down, -self.aside)
+                self._divide(x, self.down, self.aside, -self.down, -self.aside)
         return self.count
 
     def _descend(self, parent: Indices, vertices: Array, at: int) -> None:
@@ -288,20 +288,20 @@ class SlipFront:
                 other = (b_end - b) / (span - turn) if b < b_end else 0.0
                 part = min(max(part, other), 1.0)
             low = vertices[0, below] + (1 - part) * span
-            self._part(low, n, s, part * span, part * turn)
+            self._divide(low, n, s, part * span, part * turn)
             n += part * span
             s += part * turn
             at = below
             below = parent[at] if part == 1 else -1
 
-    def _part(self, low: float, n: float, s: float, span: float, turn: float) -> None:
-        """Divide a part at the breaks of M: at P', and where the path of P crosses it.
+    def _divide(self, low: float, n: float, s: float, span: float, turn: float) -> None:
+        """Divide a swept segment at the breaks of M: at P', and where the path of P crosses it.
 
         Parameters
         ----------
         low : normal coordinate of the lower end.
         n, s : distances in normal coordinate and anchor from P down to the upper end.
-        span, turn : those from the upper to the lower end, free of cancellation.
+        span, turn : differences of normal coordinate and anchor from the upper to the lower end.
         """
         upper = s * self.down - n * self.aside
         lower = upper + (turn * self.down - span * self.aside)
@@ -316,7 +316,7 @@ class SlipFront:
     def _piece(
         self, low: float, n: float, s: float, span: float, turn: float, start: float, stop: float
     ) -> None:
-        """List a part, from one share of its length to another, with the coefficients of M."""
+        """Append the piece between two shares of a swept segment, with the coefficients of M."""
         length = (stop - start) * span
         if length <= 0:
             return
@@ -347,7 +347,7 @@ class SlipFront:
         self.count += 1
 
     def _fall(self, n: float, in_contact: float, apart: float) -> float:
-        """Return the decrease of the sum; the contact of springs above P' ends before the step."""
+        """Return the decrease of the sum; springs above P' lose contact before the step ends."""
         return apart / self.down if n < self.down else max(in_contact, 0.0)
 
 

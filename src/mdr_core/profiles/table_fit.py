@@ -150,10 +150,10 @@ def _spread(
 ) -> tuple[Array, float, int]:
     """Return possible deviations of the coefficients (columns, n), odds, and the deciding point.
 
-    The deviations are those of the posterior of all models and weights, to two standard deviations
-    or, where the points tell the noise, to Student's quantile; and for each point twice its
-    influence times the excess of its residual, when it is left out, over the expected one. The odds
-    are those of the tip, sharp or smooth, that was not chosen.
+    The deviations are those of the posterior of all models and weights, to two standard deviations,
+    or to Student's quantile where the noise is estimated from the points; and for each point twice
+    its influence times the excess of its residual, when it is left out, over the expected one. The
+    odds are those of the tip, sharp or smooth, that was not chosen.
 
     Parameters
     ----------
@@ -289,7 +289,7 @@ class _Model:
             least = max(basis.points.rounding, _LEAST_SIGMA) ** 2
             variance = np.maximum(whole / freedom, least)
         self.sigma = np.sqrt(variance)
-        # A noise that the points tell is itself uncertain.
+        # A noise that is estimated from the points is itself uncertain.
         self.deviations = np.where(variance > least, stdtrit(freedom, _QUANTILE), 2.0)
         self.score = (
             whole / variance
@@ -349,7 +349,7 @@ class _Model:
         seen, left = self.turn @ self.seen, self.turn @ self.left
         influence = self.smooth @ seen.T + self.rough * (self.size / sum2) @ left.T
         outside = 1 - np.square(seen).sum(axis=1) - np.square(left).sum(axis=1)
-        # The columns meet a point that has no share outside of them: its rest is a rounding error.
+        # A point that only the columns can fit has a residual of rounding errors.
         outside = np.where(outside > _UNSEEN, outside, 0.0)
         residual = np.where(outside > 0, self.rest, 0.0) + left @ (share * self.part)
         own = np.maximum(np.square(left) @ share + outside, np.finfo(float).tiny)

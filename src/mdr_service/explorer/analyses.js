@@ -89,7 +89,7 @@ export function curveFields(inputs) {
   const choices = [["", "all points"], ...branches, ...own];
   return [
     ...(choices.length > 2 || own.length ? [{ key: "rows", label: "Segment", choices }] : []),
-    ...(rate ? [{ key: "drift", label: "Drift of the hold", choices: [["", "not subtracted"], [rate, "subtracted"]] }] : []),
+    ...(rate ? [{ key: "drift", label: "Drift from the hold", choices: [["", "not subtracted"], [rate, "subtracted"]] }] : []),
     end("from", "Depths from", "the first"), end("to", "Depths up to", "the last"),
   ];
 }

@@ -3,6 +3,7 @@
 import { basics, hasLoop } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
 import { inSI } from "./shapes.js";
+import { numberOf } from "./units.js";
 
 /** Return the fitted parameters with their standard errors. */
 function parametersOf(found) {
@@ -60,14 +61,14 @@ export async function solveFit(inputs, query) {
   if (hasLoop(inputs)) return solveLoop(inputs, query);
   const { depths: measured, forces } = inSI(inputs.curve);
   const { rows, from, to, curve: { times } } = inputs;
-  const [rate, error] = inputs.drift ? inputs.drift.split(",").map(Number) : [0];
-  const depths = rate ? measured.map((depth, i) => depth - rate * times[i]) : measured;
+  const [rate, error] = inputs.drift ? inputs.drift.split(",").map(numberOf) : [];
+  const depths = inputs.drift ? measured.map((depth, i) => depth - rate * times[i]) : measured;
   const [begin, end] = rows ? rows.split(",").map(Number) : [0, depths.length];
   const isTaken = (depth, i) => i >= begin && i <= end && (from === "" || depth >= from) && (to === "" || depth <= to);
   const points = depths.map((depth, i) => [depth, forces[i], measured[i], times?.[i], isTaken(depth, i)]);
   const columns = (taken) => [0, 1, 2, 3].map((part) => points.filter((point) => point[4] === taken).map((point) => point[part]));
   const [taken, others] = [columns(true), columns(false)];
-  const drift = rate ? { time: taken[3], drift_rate: rate, drift_rate_error: error } : {};
+  const drift = inputs.drift ? { time: taken[3], drift_rate: rate, drift_rate_error: error } : {};
   const { profile, material } = basics(inputs);
   const found = await query("Fit", "v1/normal/fit", {
     profile, indentation_depth: taken[2], ...drift, normal_force: taken[1],
@@ -85,7 +86,7 @@ export async function solveFit(inputs, query) {
     responses: [found],
     known: {},
     numbers: [
-      modulus, ...sample, ...parameters, ...(rate ? [["Drift", rate, "m/s", error]] : []),
+      modulus, ...sample, ...parameters, ...(inputs.drift ? [["Drift", rate, "m/s", error]] : []),
       ...(correlation === undefined ? [] : [["Correlation of E* and contact point", correlation, "1", undefined, 2]]),
       ...qualityOf(found),
     ],

@@ -1,7 +1,7 @@
 // The inputs: one flat object of numbers and words in SI units, and its form in the address.
 
 import { KINDS, measuredBall, measuredCurve, measuredLoop, wireProfile } from "./shapes.js";
-import { CURVE, PROFILE } from "./table_reader.js";
+import { CURVE, LENGTHS, PROFILE } from "./table_reader.js";
 import { BASE_UNITS, numberOf } from "./units.js";
 
 export const TABS = ["press", "push", "cycle", "impact", "stress", "wear", "fit"];
@@ -112,7 +112,8 @@ export function fromAddress(search, hash) {
     const times = fragment.get("t")?.split(",").map(numberOf) ?? [];
     const isWhole = times.length === inputs.curve.r.length && !times.some(Number.isNaN);
     if (isWhole) {
-      inputs.curve.times = times;
+      const drift = inputs.drift.split(",").map((each) => numberOf(each) / LENGTHS[inputs.curve.units[0]]);
+      Object.assign(inputs.curve, { times, drift });
     } else {
       inputs.drift = "";
       unread.push("t");
@@ -130,14 +131,16 @@ export function toAddress(inputs) {
   const member = ([key, value]) =>
     `${key}=${encodeURIComponent(value).replace(/%2C/g, ",").replace(/%3B/g, ";")}`;
   const defaults = { ...DEFAULTS, ...KINDS[inputs.kind].fields };
-  const keys = Object.keys(defaults).filter((key) => ["tab", "kind"].includes(key) || inputs[key] !== defaults[key]);
+  const drifts = inputs.tab === "fit" && inputs.drift !== "";
+  const isWritten = (key) => ["tab", "kind"].includes(key) || (inputs[key] !== defaults[key] && (key !== "drift" || drifts));
+  const keys = Object.keys(defaults).filter(isWritten);
   const query = keys.map((key) => member([key, inputs[key]])).join("&");
   const held = [["table", inputs.kind === "tabulated"], ["curve", inputs.tab === "fit"]].filter(([, shown]) => shown);
   const columns = held.flatMap(([key]) => {
     const { r, f, units } = inputs[key];
     return [r, f, ...units].map((value, i) => member([COLUMNS[key][i], value]));
   });
-  if (inputs.tab === "fit" && inputs.drift) columns.push(member(["t", inputs.curve.times]));
+  if (drifts) columns.push(member(["t", inputs.curve.times]));
   return columns.length ? `?${query}#${columns.join("&")}` : `?${query}`;
 }
 

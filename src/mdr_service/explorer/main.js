@@ -235,25 +235,25 @@ function showPath() {
 
 const sketch = () => showSketch($("#sketch"), inputs, last?.known?.contact_radius);
 
-// Answers to the queries of the results shown: what a change leaves as it was is not asked for again.
-let answers = new Map();
+// Responses to the queries of the results shown; unchanged queries reuse them.
+let responses = new Map();
 
 const solve = newestWins(async () => {
   const current = inputs;
   const recorded = [];
-  const asked = new Map();
+  const sent = new Map();
   const recording = (name, path, body) => {
     recorded.push({ name, path, body });
     const key = JSON.stringify([path, body]);
-    asked.set(key, asked.get(key) ?? answers.get(key) ?? query(path, body));
-    return asked.get(key);
+    sent.set(key, sent.get(key) ?? responses.get(key) ?? query(path, body));
+    return sent.get(key);
   };
   const isShown = () => inputs === current && unreadable.size === 0;
   try {
     const result = await ANALYSES[current.tab].solve(current, recording);
     if (current.tab !== inputs.tab) return;
     last = result;
-    answers = asked;
+    responses = sent;
     shownTab = current.tab;
     document.body.classList.remove("stale");
     if (isShown()) tell(null);

@@ -73,7 +73,7 @@ export const QUANTITIES = {
   work_of_adhesion: ["Work of adhesion", "N/m"],
   youngs_modulus: ["Young's modulus of the sample", "pressure"],
   youngs_modulus_error: ["Its standard deviation", "pressure"],
-  drift_rate: ["Drift of the depths that is subtracted", "m/s"],
+  drift_rate: ["Subtracted drift rate of the depths", "m/s"],
   drift_rate_error: ["Its standard deviation", "m/s"],
   g_star: ["Effective shear modulus G*", "modulus"],
   friction_coefficient: ["Coefficient of friction µ", "1"],

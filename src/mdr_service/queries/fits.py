@@ -30,9 +30,10 @@ def solve_fit(query: FitQuery) -> Fit:
     `correlated_noise`, or `misfit` where the shape or the model is wrong. Others tell that one
     point decides (`one_point`), that the interval of the contact point is lopsided
     (`undetermined`), or that no adhesion is seen (`bound`). With `poissons_ratio` the response has
-    Young's modulus of the sample. With `time` a `drift` is subtracted from the depths: that of a
-    `hold`, at at most half of the largest force, or a `drift_rate`; the standard errors contain the
-    error of the rate.
+    Young's modulus of the sample. With `time` a drift can be subtracted from the depths: `drift`
+    takes it from the last hold in the lower half of the forces, `drift_rate` prescribes it. The
+    standard errors include the error of the rate.
+
     `error_estimate` is the numerical error of the parameters.
     """
     if ("e_star" in query.fit) == query.has("material"):

@@ -169,12 +169,12 @@ class FitAnswer(LeastSquaresAnswer):
         "Its standard deviation, by that of E*", default=None
     )
     drift_rate: list[float] = quantity(
-        "length/time", "Drift of the depths that is subtracted", default=None
+        "length/time", "Subtracted drift rate of the depths", default=None
     )
     drift_rate_error: list[float] = quantity("length/time", "Its standard deviation", default=None)
     indentation_depth: list[float] = _length(
-        "Measured depths, less a drift; with adhesion without those between the least force and "
-        "the pull-off"
+        "Measured depths after subtraction of a drift; with adhesion, without the points between "
+        "the least force and the pull-off"
     )
     normal_force: list[float] = _force("Fitted forces")
 
@@ -512,8 +512,8 @@ class TableAnswer(Answer):
         "Times of a curve from its first point in seconds, if a column has a unit of time."
     )
     drift_rate: list[float] = left_out(
-        "Drift of the depth in the last hold at a low force, in the unit of the depths per second, "
-        "in a list of one entry."
+        "Drift rate in the last hold at a constant low force, in units of the depths per second, "
+        "as a list of one entry."
     )
     drift_rate_error: list[float] = left_out("Its standard error.")
 

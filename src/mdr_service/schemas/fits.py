@@ -55,7 +55,7 @@ class FitQuery(Query):
     )
     time: list[Signed] = quantity(
         "time",
-        "Times of the points, which do not fall, from that at which the drift is 0",
+        "Times of the points, non-decreasing; the drift is 0 at time 0",
         default=None,
         **_CURVE,
     )
@@ -63,7 +63,7 @@ class FitQuery(Query):
         "`hold` to subtract the drift of the depths in the last hold at a constant low force."
     )
     drift_rate: Signed = quantity(
-        "length/time", "Drift of the depths to subtract, in place of `drift`", default=None
+        "length/time", "Drift rate of the depths to subtract, instead of `drift`", default=None
     )
     drift_rate_error: Size = quantity(
         "length/time", "Its standard deviation, 0 by default", default=None
