@@ -30,10 +30,9 @@ _LEVEL: Final = 3.0
 _SHARP: Final = 0.25
 # Change beyond an end of a hold, over the range, that always suffices.
 _STEP: Final = 0.04
-# Depths over their range at which there is no contact yet, and the difference from the force there,
-# over the range of forces, up to which there is hardly any: the forces of an approach are constant
-# too.
+# Largest depth before contact, over the range of depths.
 _APPROACH: Final = 0.05
+# Largest difference from the force before contact, over the range of forces, that is no hold.
 _LOADED: Final = 0.05
 # Largest force of a hold that shows the drift, above the least force, over the range.
 _LOW: Final = 0.5
@@ -162,6 +161,11 @@ def drift(depth: Array, force: Array, time: Array, kinds: NDArray[np.str_]) -> D
 
     In a hold at a high force the sample creeps too, and a depth that is constant to the last digit
     is controlled and shows no drift. The points next to its ends may belong to the branches.
+
+    Parameters
+    ----------
+    depth, force, time : the curve in the order of time, shape (k,).
+    kinds : see `phases`.
     """
     for kind, first, last in reversed(segments(kinds)):
         if kind != "hold":
