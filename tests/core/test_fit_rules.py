@@ -204,7 +204,7 @@ def test_flat_face_that_is_too_large_for_a_layer_is_refused(shape: mdr.Profile) 
 
 @pytest.mark.long
 def test_intervals_cover_all_parameters_without_adhesion() -> None:
-    random, covered, curves = np.random.default_rng(111), [], 100
+    random, covered, curves = np.random.default_rng(111), [], 50
     names, depth = ("e_star", "contact_point", "work_of_adhesion"), np.linspace(0, 1, 24)
     for _ in range(curves):
         force = hertz(depth)
