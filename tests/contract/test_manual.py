@@ -55,7 +55,7 @@ def test_pages_load_from_this_host_and_hold_no_script(site: Path) -> None:
 @needs_chromium
 def test_pages_pass_axe(site: Path, browser: Browser) -> None:
     """Apart from the bars of the theme about code, which have no names."""
-    for path in ("", "http/", "physics/", "reference/", "notes/"):
+    for path in ("", "http/", "physics/", "reference/", "half_space/"):
         for scheme in SCHEMES:
             page = browser.new_page(color_scheme=scheme)
             with served(site) as address:
