@@ -10,7 +10,7 @@ from mdr_core.validation import BODIES, require_poissons_ratio, require_positive
 
 RIGID: Final = "rigid"
 Base = Literal["bonded", "frictionless"]
-"""How a layer is held on its base."""
+"""Condition of a layer at its base: it sticks to it, or slides on it without friction."""
 Held = Literal["contacts", "stem", "free", "block"]
 """How a round body is held: between two contacts, on a stem or by its equator, as a free body whose
 depth counts against its centre, or as a bump of a block."""

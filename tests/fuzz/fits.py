@@ -107,6 +107,7 @@ def fault(query: dict[str, Any]) -> str:
     except FAILURES as error:
         problem = to_problem(error)
         return "internal error" if problem.type == INTERNAL else ""
+    # Any other exception is a fault.
     except Exception:  # noqa: BLE001
         return traceback.format_exc(limit=-3)
     errors = document["standard_errors"]

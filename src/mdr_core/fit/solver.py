@@ -43,7 +43,7 @@ class _Curve(NamedTuple):
     drift_error: Array
     """Standard error of the subtracted drift at each point [length]."""
     kinds: NDArray[np.str_]
-    """See `phases`."""
+    """See `phases`; empty where neither a segment nor the drift of a hold is asked for."""
 
 
 def solve(
@@ -118,7 +118,7 @@ def solve(
     if np.ptp(curve[0]) == 0:
         raise InputError(("indentation_depth",), "must hold different depths")
     known_drift = drift, drift_rate, drift_rate_error
-    corrected, subtracted = _without_drift(curve, time, *known_drift)
+    corrected, subtracted = _without_drift(curve, time, segment, *known_drift)
     depth, force, drift_error = _branch(corrected, segment)
     unknown = [name for name in fit if name not in PARAMETERS]
     if unknown or not fit or len(set(fit)) < len(fit):
@@ -190,6 +190,7 @@ def _of_sample(found: Fit, ratio: float, indenter: Body | Literal["rigid"]) -> F
 def _without_drift(
     curve: tuple[Array, Array],
     time: ArrayLike | None,
+    segment: str | None,
     drift: str | None,
     rate: float | None,
     error: float | None,
@@ -207,7 +208,8 @@ def _without_drift(
                 ("time", int(falls.argmax()) + 1),
                 "is less than the previous time: sort the points by time",
             )
-    kinds = phases(depth, force, times)
+    has_phases = segment is not None or drift == "hold"
+    kinds = phases(depth, force, times) if has_phases else np.empty(0, dtype=np.str_)
     if rate is None and error is not None:
         raise InputError(("drift_rate_error",), "needs drift_rate: give both or neither")
     if rate is None and drift is None:

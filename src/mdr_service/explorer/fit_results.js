@@ -64,14 +64,13 @@ export async function solveFit(inputs, query) {
   const [rate, error] = inputs.drift ? inputs.drift.split(",").map(numberOf) : [];
   const depths = inputs.drift ? measured.map((depth, i) => depth - rate * times[i]) : measured;
   const [begin, end] = rows ? rows.split(",").map(Number) : [0, depths.length];
-  const isTaken = (depth, i) => i >= begin && i <= end && (from === "" || depth >= from) && (to === "" || depth <= to);
-  const points = depths.map((depth, i) => [depth, forces[i], measured[i], times?.[i], isTaken(depth, i)]);
-  const columns = (taken) => [0, 1, 2, 3].map((part) => points.filter((point) => point[4] === taken).map((point) => point[part]));
-  const [taken, others] = [columns(true), columns(false)];
-  const drift = inputs.drift ? { time: taken[3], drift_rate: rate, drift_rate_error: error } : {};
+  const isTaken = depths.map((depth, i) => i >= begin && i <= end && (from === "" || depth >= from) && (to === "" || depth <= to));
+  const taken = (list) => list.filter((_, i) => isTaken[i]);
+  const others = (list) => list.filter((_, i) => !isTaken[i]);
+  const drift = inputs.drift ? { time: taken(times), drift_rate: rate, drift_rate_error: error } : {};
   const { profile, material } = basics(inputs);
   const found = await query("Fit", "v1/normal/fit", {
-    profile, indentation_depth: taken[2], ...drift, normal_force: taken[1],
+    profile, indentation_depth: taken(measured), ...drift, normal_force: taken(forces),
     fit: ["e_star", ...(inputs.fitted === "none" ? [] : inputs.fitted.split(","))],
     body_thickness: material.body_thickness, poissons_ratio: inputs.nu2, indenter: material.bodies[0],
   });
@@ -91,10 +90,10 @@ export async function solveFit(inputs, query) {
       ...qualityOf(found),
     ],
     charts: chartsOf(
-      found, "Force against depth", ["indentation_depth", "normal_force"], taken,
+      found, "Force against depth", ["indentation_depth", "normal_force"], [depths, forces].map(taken),
       [
         { name: "fit", x: sorted(used), y: sorted(found.normal_force) },
-        ...(others[0].length ? [{ name: "left out", x: others[0], y: others[1], mode: "markers", role: "limit" }] : []),
+        ...(isTaken.includes(false) ? [{ name: "left out", x: others(depths), y: others(forces), mode: "markers", role: "limit" }] : []),
       ],
       [["Depth", "displacement"], used], { selects: true },
     ),
