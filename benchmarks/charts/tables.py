@@ -20,6 +20,8 @@ from mdr_core.profiles import Tabulated
 TABLES, EDGES = 600, np.array([4, 6, 9, 14, 22, 35, 55, 90, 201])
 HEADER = ("points", "errors", "median true error", "median stated error", "covered")
 LOWEST = 1e-12
+#: Larger errors are drawn here.
+HIGHEST = 10.0
 
 
 def main() -> None:
@@ -38,7 +40,9 @@ def main() -> None:
         found += [(given.r.size, *pair) for pair in zip(missed, stated, strict=True)]
     count, missed, stated = np.maximum(np.array(found), LOWEST).T
     figure, (axis,) = panels(1, 1, 3.4)
-    axis.loglog(count, missed, ".", color=GREY, markersize=2, alpha=0.5, rasterized=True)
+    # A force of almost zero has an error of any size.
+    shown = np.minimum(missed, HIGHEST)
+    axis.loglog(count, shown, ".", color=GREY, markersize=2, alpha=0.5, rasterized=True)
     rows = []
     for first, end in pairwise(EDGES):
         own = (count >= first) & (count < end)
@@ -50,7 +54,7 @@ def main() -> None:
     for column, style, name in ((2, "-", "median true error"), (3, "--", "median stated error")):
         axis.loglog(places, [float(row[column]) for row in rows], style, c=MDR_COLOR, label=name)
     axis.set_xlabel("points of the table")
-    axis.set_ylabel("error of depth or force")
+    axis.set_ylabel("error of depth or force, 10 or more at 10")
     axis.legend()
     axis.set_title("Points: true errors of random tables; lines: medians")
     save(figure, "tables", footer(), [])
