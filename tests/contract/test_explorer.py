@@ -377,7 +377,7 @@ def test_columns_segment_and_depths_of_a_curve_are_chosen(visit: Visit, tmp_path
         visit.page.select_option("#unit-force", "N")
     visit.page.locator("#warnings").get_by_text("two branches").wait_for()
     segments = visit.page.locator("#field-rows option").all_inner_texts()
-    assert segments == ["all points", "loading, rows 1 to 51", "unloading, rows 52 to 100"]
+    assert segments == ["all points", "loading, 1 to 51", "unloading, 52 to 100"]
     for option, modulus in (("0,50", 2.0), ("51,99", 3.0)):
         with visit.changing():
             visit.page.select_option("#field-rows", option)

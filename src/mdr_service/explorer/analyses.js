@@ -79,7 +79,7 @@ export const MEASURED = {
 export function curveFields(inputs) {
   if (hasLoop(inputs)) return [];
   const { segments = [], units: [unit], drift } = inputs.curve;
-  const words = (row) => `rows ${row.split(",").map((each) => Number(each) + 1).join(" to ")}`;
+  const words = (row) => row.split(",").map((each) => Number(each) + 1).join(" to ");
   const branches = segments.map(({ kind, first, last }) => [`${first},${last}`, `${kind}, ${words(`${first},${last}`)}`]);
   // A link holds rows without the direction of the depth.
   const own = inputs.rows && !branches.some(([rows]) => rows === inputs.rows) ? [[inputs.rows, words(inputs.rows)]] : [];
@@ -88,7 +88,7 @@ export function curveFields(inputs) {
   const end = (key, label, placeholder) => ({ key, label, dimension: "displacement", optional: true, placeholder });
   const choices = [["", "all points"], ...branches, ...own];
   return [
-    ...(choices.length > 2 || own.length ? [{ key: "rows", label: "Segment", choices }] : []),
+    ...(choices.length > 2 || own.length ? [{ key: "rows", label: "Rows", choices }] : []),
     ...(rate ? [{ key: "drift", label: "Drift from the hold", choices: [["", "not subtracted"], [rate, "subtracted"]] }] : []),
     end("from", "Depths from", "the first"), end("to", "Depths up to", "the last"),
   ];
