@@ -178,7 +178,7 @@ def _content(arguments: argparse.Namespace) -> bytes:
         query = QUERIES[name].request.model_validate_json(_read(arguments.file or _STANDARD_INPUT))
         return respond(name, query, media_type, look)
     if name == "fit":
-        members |= _curve(arguments)
+        members |= _curve(arguments, given)
     elif arguments.file:
         raise InputError((), "give the request by a file or by options, not both")
     parameters = _PARAMETERS[name].model_validate(given)
@@ -186,15 +186,25 @@ def _content(arguments: argparse.Namespace) -> bytes:
         return respond(name, parameters.query(members), media_type, look, parameters.members)
 
 
-def _curve(arguments: argparse.Namespace) -> dict[str, object]:
-    """Return the lists of the curve in a file, in metres, newtons and seconds."""
+def _curve(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object]:
+    """Return the lists of the curve in a file, in metres, newtons and seconds.
+
+    If a column tells the segments, they are those of a fit without the drift of a hold.
+    """
     if not arguments.file:
         raise InputError((), "a fit by options needs the file of its curve: mdr fit curve.csv")
     units = (arguments.curve_units or ",").split(",")
     if len(units) != len(CURVE):
         raise InputError(("curve_units",), "gives the units of depth and force, such as nm,uN")
     curve = read_curve(arguments.file, [unit or None for unit in units])
-    return {name: values.tolist() for name, values in curve._asdict().items() if values is not None}
+    used = np.ones(curve.normal_force.size, dtype=bool)
+    if curve.segments and "segment" in given and "drift" not in given:
+        used = np.array(curve.segments) == given.pop("segment")
+        if not used.any():
+            kinds = ", ".join(dict.fromkeys(curve.segments))
+            raise InputError(("segment",), f"must be one of the segments in the file: {kinds}")
+    lists = zip(MeasuredCurve._fields, curve[:3], strict=False)
+    return {name: values[used].tolist() for name, values in lists if values is not None}
 
 
 def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object]:

@@ -77,6 +77,8 @@ class MeasuredCurve(NamedTuple):
     """Forces [force]."""
     time: Array | None = None
     """Times from the first point [s], None without a column of them."""
+    segments: list[str] | None = None
+    """Kind of the segment of each point, None unless a column tells it."""
 
 
 class ParsedFile(NamedTuple):
@@ -154,7 +156,7 @@ def read_curve(file: str | Path, units: Sequence[str | None] = (None, None)) -> 
     table = _parsed(file, CURVE)
     time = None if table.time is None else np.array(table.time)
     depth, force = _in_units(table, CURVE, units, (1.0, 1.0))
-    return MeasuredCurve(depth, force, time)
+    return MeasuredCurve(depth, force, time, table.segments)
 
 
 def metres(name: str) -> float:

@@ -97,6 +97,25 @@ def test_drift_rate_option_uses_times_of_file(tmp_path: Path) -> None:
     assert document["indentation_depth"] == pytest.approx(FIT["indentation_depth"], abs=1e-15)
 
 
+def test_segments_named_in_the_file_have_priority_over_the_depths(
+    tmp_path: Path, capsys: Capture
+) -> None:
+    curve, result = tmp_path / "curve.csv", tmp_path / "fit.json"
+    # In the pause before it withdraws, the depth falls with noise.
+    kinds = [*["extend"] * 7, *["pause"] * 3, *["retract"] * 6]
+    depths = [*range(-10, 60, 10), 50, 49, 49, *range(40, -20, -10)]
+    forces = [*FORCES, 11.0, 10.9, 10.8, *FORCES[5::-1]]
+    rows = "".join(f"{a};{d};{f}\n" for a, d, f in zip(kinds, depths, forces, strict=True))
+    curve.write_text("Segment;d [nm];F [µN]\n" + rows, "utf-8")
+    command = ["fit", str(curve), *FIT_OPTIONS, "-o", str(result), "--segment"]
+    assert main([*command, "unloading"]) == 0
+    fitted = json.loads(result.read_text("utf-8"))["indentation_depth"]
+    expected = [1e-9 * depth for depth in depths[10:]]
+    assert fitted == pytest.approx(expected, rel=1e-12, abs=0)
+    assert main([*command, "upward"]) == 2
+    assert "--segment: must be one of the segments in the file" in capsys.readouterr().err
+
+
 def test_a_fit_by_options_needs_its_curve(capsys: Capture) -> None:
     assert main(["fit", *FIT_OPTIONS]) == 2
     assert "needs the file of its curve" in capsys.readouterr().err
