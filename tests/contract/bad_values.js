@@ -42,7 +42,7 @@ async ({ tabs, kinds, values }) => {
                 // The address leaves out what has its default.
                 const value = new URLSearchParams(drawn.split("#")[0]).get(key) ?? String(withKind(defaultInputs(), kind)[key]);
                 const belong = state === "current" && value === (text && String(Number(text)));
-                const empty = shown.childElementCount === 0;
+                const empty = shown.childElementCount === 0 || !shown.checkVisibility({ visibilityProperty: true });
                 const dimmed = [...document.querySelectorAll("#numbers, #charts, #main-numbers")].every(({ inert }) => inert)
                     && getComputedStyle(document.querySelector("#outdated")).display !== "none";
                 const named = document.querySelector(".problem:not(:empty), #problem:not([hidden])");

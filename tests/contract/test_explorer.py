@@ -559,6 +559,9 @@ def test_no_results_are_shown_beside_input_of_another_case(visit: Visit, tab: st
     visit.open()
     kinds = visit.page.locator("#kind option").evaluate_all("all => all.map(one => one.value)")
     assert len(kinds) == 16
+    # All kinds have the same form in each analysis.
+    if tab != TABS[0]:
+        kinds = kinds[TABS.index(tab) % 4 :: 4]
     given = {"tabs": [tab], "kinds": kinds, "values": BAD_VALUES}
     result = visit.page.evaluate(script("bad_values.js"), given)
     assert result["errors"] == []
