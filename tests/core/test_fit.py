@@ -148,8 +148,7 @@ def test_points_after_the_pull_off_are_not_left_out_in_noise() -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("noise", [0.01, 0.05])
-@pytest.mark.parametrize("shape", NOISY)
+@pytest.mark.parametrize(("shape", "noise"), [("paraboloid", 0.05), ("cone", 0.01)])
 def test_intervals_cover_the_work_of_adhesion(shape: str, noise: float) -> None:
     off = off_by(shape, noise, seed=4, curves=20)
     assert np.sum(np.abs(off) > 1.984) <= 12
