@@ -22,7 +22,7 @@ from tests.contract.forged_addresses import forged
 pytestmark = [pytest.mark.long, needs_chromium]
 TABS = ["press", "push", "cycle", "impact", "stress", "wear", "fit"]
 SCENES = 60
-ADDRESSES = 250
+ADDRESSES = 120
 
 
 def script(name: str) -> str:
