@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 Array = np.ndarray
-#: Contact radii over the thickness of the reference, and the largest of both comparisons.
-PARTS, THICK, THIN = np.geomspace(0.05, 3.0, 14), 0.5, 3.0
+#: Largest contact radii of both comparisons, and those of the reference, over the thickness.
+THICK, THIN = 0.5, 3.0
+PARTS = np.append(np.geomspace(0.05, THICK, 8), np.geomspace(THICK, THIN, 7)[1:])
 COUNT = 1000
 BALL, SAMPLE = Paraboloid(1.0), Layer(1.0, "bonded", 0.5)
 HEADER = ("method", "largest a/h", "seconds for 1000 depths", "largest relative error")

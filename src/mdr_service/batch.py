@@ -18,8 +18,8 @@ class BatchItem(Strict):
     """Query of a batch."""
 
     ask: str = Field(
-        description="Name of the query, as its path ends: `fit` belongs to `/v1/normal`, `history` "
-        "and `impact` to `/v1/tangential`, `evolution` to `/v1/wear`.",
+        description="Name of the query, as its path ends: `fit` is that of `/v1/normal/fit`, "
+        "`tangential_fit` of `/v1/tangential/fit`.",
         json_schema_extra={"enum": [*QUERIES]},
     )
     request: dict[str, Any] = Field(

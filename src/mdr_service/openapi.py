@@ -27,7 +27,7 @@ column per quantity, in which infinities are written `inf`; `npz`, an archive of
 `numpy.load`; `txt`, the table without its heading; or `svg`, `png` or `pdf`, a picture of the
 values of the response, whose width and height `?size=` sets, and whose units `?units=` names.
 
-**GET.** Five queries are available by parameters as well, for spreadsheets and browsers: numbers,
+**GET.** Six queries are available by parameters as well, for spreadsheets and browsers: numbers,
 lists of loads, and one range. `answers` chooses members of the response, and with `format=txt` a
 single number is returned as plain text.
 

@@ -49,7 +49,10 @@ class AnswerWarning(Answer):
     code: str = Field(description="Stable name of the warning.")
     message: str = Field(description="Explanation in this case.")
     value: float | None = Field(description="Size of the finding, null where it has none.")
-    limit: float | None = Field(description="Limit that the value exceeds, null where it has none.")
+    limit: float | None = Field(
+        description="Limit beyond which the warning is raised, a lower one of probabilities and of "
+        "`jkr_range`; null where it has none."
+    )
     instead: Remedy | None = Field(description="Remedy, null where there is none.")
 
 
@@ -84,7 +87,7 @@ class SolvedAnswer(Answer):
     )
     error_estimate: float = _number(
         "Bound on the numerical error: of scalars relative to their values, of fields, histories "
-        "and stresses to the largest value; for wear over the cycles an estimate"
+        "and stresses to the largest value; for impacts and wear over the cycles an estimate"
     )
     model_error: list[float] = _number(
         "Estimate, no bound, of the relative error of depth, force and displacements by the model: "

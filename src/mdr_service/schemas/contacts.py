@@ -234,7 +234,7 @@ class Moduli(Elastic):
     )
     shear_modulus: float = positive(
         "pressure",
-        "Shear modulus G of both bodies, 1/G = Σ 1/Gᵢ; needed with a twist only",
+        "Shear modulus G of a twist, 1/G = 1/G₁ + 1/G₂: half of that of two equal bodies",
         default=None,
     )
     poissons_ratio: float = quantity(
