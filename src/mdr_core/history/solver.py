@@ -13,7 +13,7 @@ from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.elementwise import number
 from mdr_core.errors import InputError
 from mdr_core.history import load_path, slip_memory
-from mdr_core.history.contact_state import ContactState, Edge, unloaded
+from mdr_core.history.contact_state import ContactState, unloaded
 from mdr_core.history.load_path import UNLOADED, SampledPath, SavedState
 from mdr_core.history.slip_layout import NORMAL
 from mdr_core.history.slip_memory import Polyline
@@ -142,15 +142,9 @@ class LoadHistory(validity.ResultsOverLoads):
     def state(self) -> ContactState:
         """State of the contact at the end of the history."""
         vertices, line = self.results.end
-        last = vertices.tree.last
-        force = vertices.conjugate
         if self.path.over_forces:
-            line = self._over_depths(vertices.conjugate_step[last[1:]], line)
-            force = vertices.tree.normal
-        state = replace(self.path.start, polyline=line)
-        edges = np.array([vertices.coordinate, force, vertices.shear])[:, last]
-        state.known_edges.extend(Edge(*map(number, edge)) for edge in edges.T.tolist())
-        return state
+            line = self._over_depths(vertices.conjugate_step[vertices.tree.last[1:]], line)
+        return replace(self.path.start, polyline=line)
 
     @property
     def final_state(self) -> dict[str, Any]:
@@ -308,17 +302,13 @@ def _require_solvable(path: SampledPath) -> None:
 
     It suffices that the largest load and the smallest load above zero have a solution.
     """
-    loads = path.normal_loads
-    least, most = extremes(loads)
-    if least <= 0 < most:
-        least = float(loads[loads > 0].min())
-    for load in dict.fromkeys((max(most, 0.0), max(least, 0.0))):
-        try:
-            given = {path.normal_name: number(load)}
-            normal.solve(path.start.profile, path.start.e_star, **given)
-        except InputError as error:
-            if error.path[:1] != ("load",):
-                raise
-            at = int(np.argmax(loads == load))
-            place = "history", "normal", path.normal_name, int(path.step[at - 1])
-            raise InputError(place if at else _BEGIN, error.detail) from None
+    loads = np.maximum(path.normal_loads, 0.0)
+    ends = np.array([loads.argmax(), np.where(loads > 0, loads, np.inf).argmin()])
+    try:
+        normal.solve(path.start.profile, path.start.e_star, **{path.normal_name: loads[ends]})
+    except InputError as error:
+        if error.path[:1] != ("load",):
+            raise
+        at = int(ends[error.path[2]])
+        place = "history", "normal", path.normal_name, int(path.step[at - 1])
+        raise InputError(place if at else _BEGIN, error.detail) from None
