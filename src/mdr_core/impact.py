@@ -25,16 +25,16 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array
 from mdr_core.validation import (
-    FINITE,
     POSITIVE,
-    as_numbers,
     first_index,
+    only_one,
+    require_finite,
     require_inside,
+    require_not_negative,
     require_single_positive,
     require_tolerance,
 )
 
-_APPROACH: Final = f"{POSITIVE} and finite: approach is positive"
 # Numbers of samples of the compression, used one after the other.
 _SAMPLES: Final = tuple(12 << doublings for doublings in range(11))
 # Number of differences between two solutions that an estimate needs. The error falls by a factor of
@@ -238,16 +238,12 @@ def solve(
 
 def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> tuple[Array, ...]:
     """Return the velocities in their common shape; raise InputError if they are invalid."""
-    speeds = as_numbers(("normal_velocity",), normal_velocity)
-    along = as_numbers(("tangential_velocity",), tangential_velocity)
-    for name, good, detail in (
-        ("normal_velocity", (speeds > 0) & np.isfinite(speeds), _APPROACH),
-        ("tangential_velocity", np.isfinite(along), FINITE),
-    ):
-        if not np.size(good):
-            raise InputError((name,), "at least one value is needed")
-        if not every(good):
-            raise InputError((name, *first_index(~good)), detail)
+    _, speeds = only_one((), {"normal_velocity": normal_velocity})
+    _, along = only_one((), {"tangential_velocity": tangential_velocity})
+    require_not_negative(("normal_velocity",), speeds)
+    require_finite(("tangential_velocity",), along)
+    if not every(speeds > 0):
+        raise InputError(("normal_velocity", *first_index(speeds <= 0)), POSITIVE)
     try:
         return np.broadcast_arrays(speeds, along)
     except ValueError:

@@ -144,7 +144,7 @@ class LoadHistory(validity.ResultsOverLoads):
         vertices, line = self.results.end
         if self.path.over_forces:
             line = self._over_depths(vertices.conjugate_step[vertices.tree.last[1:]], line)
-        return replace(self.path.start, polyline=line)
+        return replace(self.path.start, polyline=line, before=line)
 
     @property
     def final_state(self) -> dict[str, Any]:
