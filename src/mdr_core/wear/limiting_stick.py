@@ -39,7 +39,7 @@ class LimitingStick:
     step: Array
     """d - g(c) in the limit [length], free of cancellation."""
     slip_width: Array
-    """About the width outside c in which g grows by the step [length]; zero without slip."""
+    """Width of the slip annulus before wear, or outside c [length]; zero without slip."""
     separated: Flags
     """Full slip at a constant depth: the contact wears until nothing touches."""
     unbounded: Flags
@@ -65,10 +65,7 @@ def by_forces(contact: TangentialContact, amplitude: Array) -> LimitingStick:
     In the limit the stick zone carries the force: F_x = 2 mu E* c (d - g(c)). Source: notes, §9.
     """
     step = _step_of_force(contact, amplitude, contact.stick_radius)
-    before = contact.tangential_displacement / contact.displacement_ratio
-    grown = np.maximum(step, before) / where(before > 0, before, 1.0)
-    moved = contact.stick_coordinate, contact.stick_radius, grown * contact.slip_width
-    return _from(contact, step, unbounded=contact.full_slip, moved=moved)
+    return _from(contact, step, unbounded=contact.full_slip)
 
 
 def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> LimitingStick:
