@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import history, normal, validity
-from mdr_core.elementwise import every, number
+from mdr_core.elementwise import number
 from mdr_core.errors import AccuracyError, InputError, Notice
 from mdr_core.history import ContactState, slip_memory
 from mdr_core.history.slip_memory import LoadPoints
@@ -26,8 +26,8 @@ from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array
 from mdr_core.validation import (
     POSITIVE,
-    first_index,
     only_one,
+    reject,
     require_finite,
     require_inside,
     require_not_negative,
@@ -242,8 +242,7 @@ def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> t
     _, along = only_one((), {"tangential_velocity": tangential_velocity})
     require_not_negative(("normal_velocity",), speeds)
     require_finite(("tangential_velocity",), along)
-    if not every(speeds > 0):
-        raise InputError(("normal_velocity", *first_index(speeds <= 0)), POSITIVE)
+    reject(("normal_velocity",), speeds, speeds <= 0, POSITIVE)
     try:
         return np.broadcast_arrays(speeds, along)
     except ValueError:

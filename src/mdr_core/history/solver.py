@@ -16,7 +16,6 @@ from mdr_core.history import load_path, slip_memory
 from mdr_core.history.contact_state import ContactState, unloaded
 from mdr_core.history.load_path import UNLOADED, SampledPath, SavedState
 from mdr_core.history.slip_layout import NORMAL
-from mdr_core.history.slip_memory import Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
@@ -142,8 +141,9 @@ class LoadHistory(validity.ResultsOverLoads):
     def state(self) -> ContactState:
         """State of the contact at the end of the history."""
         vertices, line = self.results.end
-        if self.path.over_forces:
-            line = self._over_depths(vertices.conjugate_step[vertices.tree.last[1:]], line)
+        if self.path.over_forces and line.in_contact:
+            span = vertices.conjugate_step[vertices.tree.last[1:]]
+            line = slip_memory.stacked(span, slip_memory.as_tree(line).slope[1:])
         return replace(self.path.start, polyline=line, before=line)
 
     @property
@@ -157,12 +157,6 @@ class LoadHistory(validity.ResultsOverLoads):
             str(self.regime[-1]),
             self.results.end.line.vertices[:-1, :NORMAL].tolist(),
         )._asdict()
-
-    def _over_depths(self, span: Array, line: Polyline) -> Polyline:
-        """Return the polyline over depths with the slopes of a polyline over reduced forces."""
-        if not line.in_contact:
-            return slip_memory.separated(min(float(self.indentation_depth[-1]), 0.0), 0.0)
-        return slip_memory.stacked(span, slip_memory.as_tree(line).slope[1:])
 
     @property
     def slip_fronts(self) -> Array:

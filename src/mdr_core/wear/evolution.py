@@ -18,7 +18,7 @@ from mdr_core.typing import Array
 from mdr_core.validation import (
     UNRESOLVED,
     as_numbers,
-    first_index,
+    reject,
     require_not_negative,
     require_single_positive,
     require_tolerance,
@@ -336,6 +336,5 @@ def _checked_cycles(cycles: ArrayLike) -> Array:
         raise InputError(("cycles",), "a list of at least one number is needed")
     require_not_negative(("cycles",), numbers)
     falls = np.append(False, np.diff(numbers) < 0)
-    if falls.any():
-        raise InputError(("cycles", *first_index(falls)), "must be ascending")
+    reject(("cycles",), numbers, falls, "must be ascending")
     return numbers
