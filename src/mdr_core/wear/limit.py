@@ -157,13 +157,12 @@ class LimitingWear(validity.ContactResults):
 
         Source: notes, §9.
         """
-        unbounded, width = self.stick_zone.unbounded, self.wear_width
-        volume, flat = np.zeros(width.size), np.ravel(width)
-        # Without slip there is no annulus.
-        worn = np.flatnonzero((flat > 0) & ~np.ravel(unbounded))
-        c, step = (np.ravel(part)[worn] for part in (self.stick_zone.radius, self.stick_zone.step))
+        flat, zone = np.ravel(self.wear_width), self.stick_zone
+        # Without slip there is no annulus, and in full slip under a constant force no end of it.
+        volume, worn = np.where(flat > 0, inf, 0.0), np.flatnonzero((flat > 0) & (flat < inf))
+        c, step = (np.ravel(part)[worn] for part in (zone.radius, zone.step))
         volume[worn] = worn_annulus.worn_volume(self.normal.profile, c, flat[worn], step)
-        return where(unbounded, inf, volume.reshape(width.shape)[()])
+        return volume.reshape(self.wear_width.shape)[()]
 
     @cached_property
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
