@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import history, normal, validity
-from mdr_core.elementwise import number
+from mdr_core.elementwise import full, number
 from mdr_core.errors import AccuracyError, InputError, Notice
 from mdr_core.history import ContactState, slip_memory
 from mdr_core.history.slip_memory import LoadPoints
@@ -261,11 +261,9 @@ def _largest_coordinates(profile: Profile, energy: Array) -> Array:
         value = profile.reduced_energy(s)
         return value, s * profile.reduced_force(s) * profile.depth_slope(s) / value
 
-    goal = np.ravel(energy)
-    low, high = np.zeros_like(goal), np.full_like(goal, profile.domain)
+    low, high = full(0.0, energy), full(profile.domain, energy)
     with np.errstate(all="ignore"):
-        found = invert(stored, goal, np.minimum(high / 2, 1.0), low, high, profile.kind)
-    return found.reshape(np.shape(energy))
+        return invert(stored, energy, np.minimum(high / 2, 1.0), low, high, profile.kind)
 
 
 def _refined(scene: _Scene, rtol: float) -> tuple[Array, bool, float]:
