@@ -206,34 +206,27 @@ def _from(
 
     With a `width_error` the stick radius has moved, else it is that before wear.
     """
+    normal, slides = contact.normal, separated | unbounded
     unworn = contact.stick_coordinate, contact.stick_radius, contact.slip_width
-    normal = contact.normal
-    # In full slip c = 0, and all of the depth is worn.
-    depth = where(unbounded, inf, normal.indentation_depth)
-    lost = 0.0, 0.0, normal.contact_radius, depth
-    found = zip(lost, (*(moved or unworn), step), strict=True)
-    slides = separated | unbounded
-    coordinate, radius, slip_width, step = (where(slides, *pair) for pair in found)
-    # Without a normal load nothing wears.
-    loaded = normal.coordinate > 0
-    # A flat punch either sticks or is in full slip.
-    rests = (slip_width <= 0) | ~loaded
+    coordinate, radius, slip_width = moved or unworn
     if width_error is None:
         # The coordinate resolves the distance from a flat.
         flat = where(contact.full_slip, 0.0, normal.profile.first_radius)
         width_error, error = full(0.0, slip_width), contact.stick_error - ROUNDING * flat
     else:
         beyond = normal.contact_radius - normal.profile.first_radius
-        error = normal.edge_errors * beyond + width_error * slip_width
-    parts = (
-        where(rests, normal.coordinate, coordinate),
-        where(rests, normal.contact_radius, radius),
-        where(rests, 0.0, step),
-        where(rests, 0.0, slip_width),
-        separated & loaded,
-        unbounded & loaded,
-        width_error,
-        error,
+        width = where(slides, normal.contact_radius, slip_width)
+        error = normal.edge_errors * beyond + width_error * width
+    # Without a normal load nothing wears, and a flat punch either sticks or is in full slip.
+    loaded = normal.coordinate > 0
+    rests = ~loaded | ((slip_width <= 0) & ~slides)
+    depth = where(unbounded, inf, normal.indentation_depth)
+    cases = (
+        (normal.coordinate, 0.0, coordinate),
+        (normal.contact_radius, 0.0, radius),
+        (0.0, depth, step),
+        (0.0, normal.contact_radius, slip_width),
     )
-    spread = (broadcast(part, contact.width.shape) for part in parts)
-    return LimitingStick(normal.profile, *spread)
+    parts = [where(rests, still, where(slides, lost, found)) for still, lost, found in cases]
+    parts += [separated & loaded, unbounded & loaded, width_error, error]
+    return LimitingStick(normal.profile, *(broadcast(part, contact.width.shape) for part in parts))
