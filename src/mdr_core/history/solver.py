@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, normal, validity
 from mdr_core.doubles import EPS, ROUNDING
-from mdr_core.elementwise import number
 from mdr_core.errors import InputError
 from mdr_core.history import load_path, slip_memory
 from mdr_core.history.contact_state import ContactState, unloaded
@@ -21,7 +20,7 @@ from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
-from mdr_core.validation import extremes, not_negative, only_one
+from mdr_core.validation import not_negative, only_one
 
 # Location in the request of the normal load from which a history starts.
 _BEGIN: Final = ("initial_state", "normal")
@@ -52,11 +51,8 @@ class LoadHistory(validity.ResultsOverLoads):
 
     @cached_property
     def normal(self) -> NormalContact:
-        """Normal contact of every sample, with zero load in separation; one if it is constant."""
-        load = np.maximum(self.path.normal, 0.0)
-        least, most = extremes(load)
-        # A constant load is solved once, which takes less time than many equal loads.
-        given = {self.path.normal_name: number(most) if least == most else load}
+        """Normal contact of every sample, with zero load in separation."""
+        given = {self.path.normal_name: np.maximum(self.path.normal, 0.0)}
         return normal.solve(self.path.start.profile, self.e_star, **given)
 
     @property
@@ -64,31 +60,27 @@ class LoadHistory(validity.ResultsOverLoads):
         """Index of the given point at which the load step of each sample ends."""
         return self.path.step
 
-    @cached_property
+    @property
     def indentation_depth(self) -> Array:
         """d [length]; negative in separation."""
         if self.path.depth_prescribed:
             return self.path.normal
-        return self._at_samples(self.normal.indentation_depth)
+        return self.normal.indentation_depth
 
-    @cached_property
+    @property
     def normal_force(self) -> Array:
         """F_N [force]."""
-        return self._at_samples(self.normal.normal_force)
+        return self.normal.normal_force
 
     @cached_property
     def contact_radius(self) -> Array:
         """a [length]; zero in separation."""
         return np.where(self.path.normal < 0, 0.0, self.normal.contact_radius)
 
-    @cached_property
+    @property
     def elastic_energy(self) -> Array:
         """Energy stored by the normal load, int F_N dd [force length]."""
-        return self._at_samples(self.normal.elastic_energy)
-
-    def _at_samples(self, value: Array) -> Array:
-        """Return a result of the normal contact at every sample."""
-        return value if np.ndim(value) else np.full(self.path.normal.shape, value)
+        return self.normal.elastic_energy
 
     @cached_property
     def tangential_force(self) -> Array:
