@@ -242,7 +242,8 @@ def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> t
     _, along = only_one((), {"tangential_velocity": tangential_velocity})
     require_not_negative(("normal_velocity",), speeds)
     require_finite(("tangential_velocity",), along)
-    reject(("normal_velocity",), speeds, speeds <= 0, POSITIVE)
+    detail = f"{POSITIVE} and finite: approach is positive"
+    reject(("normal_velocity",), speeds, speeds <= 0, detail)
     try:
         return np.broadcast_arrays(speeds, along)
     except ValueError:
