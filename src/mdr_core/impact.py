@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import history, normal, validity
-from mdr_core.elementwise import every, number
+from mdr_core.elementwise import full, number
 from mdr_core.errors import AccuracyError, InputError, Notice
 from mdr_core.history import ContactState, slip_memory
 from mdr_core.history.slip_memory import LoadPoints
@@ -25,16 +25,16 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array
 from mdr_core.validation import (
-    FINITE,
     POSITIVE,
-    as_numbers,
-    first_index,
+    only_one,
+    reject,
+    require_finite,
     require_inside,
+    require_not_negative,
     require_single_positive,
     require_tolerance,
 )
 
-_APPROACH: Final = f"{POSITIVE} and finite: approach is positive"
 # Numbers of samples of the compression, used one after the other.
 _SAMPLES: Final = tuple(12 << doublings for doublings in range(11))
 # Number of differences between two solutions that an estimate needs. The error falls by a factor of
@@ -139,27 +139,6 @@ class _Motion(NamedTuple):
     """int F_N (t_end - t) dt over each step, the loss of distance times the mass [mass length]."""
 
 
-class _Rebound(NamedTuple):
-    """Results of one impact."""
-
-    velocity: float
-    """Tangential velocity after the impact."""
-    duration: float
-    impulse: float
-    dissipated: float
-    slides: bool
-    """All springs slip throughout."""
-
-    def extrapolated(self, coarse: "_Rebound") -> "_Rebound":
-        """Return Richardson's extrapolation of the results with half as many samples."""
-        *fine, slides = self
-        velocity, duration, impulse, dissipated = (
-            one + (one - other) / 3 for one, other in zip(fine, coarse, strict=False)
-        )
-        # Extrapolation must not make an energy negative that is below its own error.
-        return _Rebound(velocity, duration, impulse, max(dissipated, 0.0), bool(slides))
-
-
 class _Scene(NamedTuple):
     """Impact of one velocity of approach and one tangential velocity."""
 
@@ -232,16 +211,13 @@ def solve(
     require_single_positive(("tangential_mass",), tangential_mass)
     speeds, along = _velocities(normal_velocity, tangential_velocity)
     last = _largest_coordinates(profile, normal_mass / (2 * start.e_star) * np.square(speeds))
-    results, errors = [], [float(np.max(profile.rounding_at(last)))]
     cases = zip(*(each.ravel().tolist() for each in (last, speeds, along)), strict=True)
-    for end, v, w in cases:
-        scene = _Scene(start, end, normal_mass, tangential_mass, v, w)
-        result, error = _refined(scene, rtol)
-        results.append(result)
-        errors.append(error)
-    after, duration, impulse, dissipated, slides = (
-        np.reshape(each, speeds.shape)[()] for each in zip(*results, strict=True)
+    scenes = [_Scene(start, end, normal_mass, tangential_mass, v, w) for end, v, w in cases]
+    rebounds, slides, errors = zip(*(_refined(scene, rtol) for scene in scenes), strict=True)
+    after, duration, impulse, dissipated = (
+        np.reshape(each, speeds.shape)[()] for each in np.transpose(rebounds)
     )
+    regime = np.where(np.reshape(slides, speeds.shape), "full_slip", "partial_slip")
     known = e_star if isinstance(e_star, Material) else Material(start.e_star)
     # The depth of bodies that fly counts against their centres.
     material = replace(known, held=("free", "free"))
@@ -254,24 +230,20 @@ def solve(
         duration,
         impulse,
         dissipated,
-        np.where(along == 0, "stick", np.where(slides, "full_slip", "partial_slip")),
-        max(errors),
+        np.where(along == 0, "stick", regime),
+        max(*errors, float(np.max(profile.rounding_at(last)))),
         rtol,
     )
 
 
 def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> tuple[Array, ...]:
     """Return the velocities in their common shape; raise InputError if they are invalid."""
-    speeds = as_numbers(("normal_velocity",), normal_velocity)
-    along = as_numbers(("tangential_velocity",), tangential_velocity)
-    for name, good, detail in (
-        ("normal_velocity", (speeds > 0) & np.isfinite(speeds), _APPROACH),
-        ("tangential_velocity", np.isfinite(along), FINITE),
-    ):
-        if not np.size(good):
-            raise InputError((name,), "at least one value is needed")
-        if not every(good):
-            raise InputError((name, *first_index(~good)), detail)
+    _, speeds = only_one((), {"normal_velocity": normal_velocity})
+    _, along = only_one((), {"tangential_velocity": tangential_velocity})
+    require_not_negative(("normal_velocity",), speeds)
+    require_finite(("tangential_velocity",), along)
+    detail = f"{POSITIVE} and finite: approach is positive"
+    reject(("normal_velocity",), speeds, speeds <= 0, detail)
     try:
         return np.broadcast_arrays(speeds, along)
     except ValueError:
@@ -290,22 +262,21 @@ def _largest_coordinates(profile: Profile, energy: Array) -> Array:
         value = profile.reduced_energy(s)
         return value, s * profile.reduced_force(s) * profile.depth_slope(s) / value
 
-    goal = np.ravel(energy)
-    low, high = np.zeros_like(goal), np.full_like(goal, profile.domain)
+    low, high = full(0.0, energy), full(profile.domain, energy)
     with np.errstate(all="ignore"):
-        found = invert(stored, goal, np.minimum(high / 2, 1.0), low, high, profile.kind)
-    return found.reshape(np.shape(energy))
+        return invert(stored, energy, np.minimum(high / 2, 1.0), low, high, profile.kind)
 
 
-def _refined(scene: _Scene, rtol: float) -> tuple[_Rebound, float]:
-    """Return the extrapolated results of an impact, and an estimate of their error.
+def _refined(scene: _Scene, rtol: float) -> tuple[Array, bool, float]:
+    """Return the extrapolated results of `_rebound`, and an estimate of their error.
 
     The estimate is the largest difference between solutions with two numbers of samples, each
     divided by four with every later doubling, or the difference between the work of friction and
-    the loss of energy, if that is larger.
+    the loss of energy, if that is larger. Differences are relative to the larger velocity, its
+    momentum and energy, and to the duration.
     """
-    solved: list[_Rebound] = []
-    error, course = 0.0, np.zeros((2, 1))
+    solved: list[Array] = []
+    error, course, before = 0.0, np.zeros((2, 1)), scene.tangential_velocity
     for count in _SAMPLES:
         found = _rebound(scene, _motion(scene, count), course)
         if found is None and count < _ENOUGH:
@@ -316,15 +287,22 @@ def _refined(scene: _Scene, rtol: float) -> tuple[_Rebound, float]:
         if found is None:
             detail = "is so small that the contact point oscillates many times: increase it"
             raise AccuracyError(detail, ("tangential_mass",))
-        fine, course = found
+        fine, slides, course = found
         solved.append(fine)
         if len(solved) > 1:
-            error = max(error / 4, _difference(scene, *solved[-2:]))
-            result = fine.extrapolated(solved[-2])
-            estimate = max(error, _imbalance(scene, result))
+            speed, mass = max(abs(before), abs(fine[0])) or 1.0, scene.tangential_mass
+            energy = mass * speed**2 / 2
+            change = fine - solved[-2]
+            relative = np.abs(change / [speed, fine[1], mass * speed, energy])
+            error = max(error / 4, float(relative.max()))
+            result = fine + change / 3
+            # Richardson's extrapolation must not make an energy negative that is below its error.
+            result[3] = max(result[3], 0.0)
+            lost = mass / 2 * (before - result[0]) * (before + result[0])
+            estimate = max(error, abs(lost - result[3]) / energy)
             if len(solved) > _DIFFERENCES and estimate <= rtol:
                 break
-    return result, estimate
+    return result, slides, estimate
 
 
 def _motion(scene: _Scene, count: int) -> _Motion:
@@ -357,10 +335,12 @@ def _motion(scene: _Scene, count: int) -> _Motion:
     return _Motion(depth[1:], force[1:], step, -mass * np.diff(speed), lag)
 
 
-def _rebound(scene: _Scene, motion: _Motion, guess: Array) -> tuple[_Rebound, Array] | None:
-    """Solve m_t u'' = -F_x along a normal motion; return the results, and times and displacements.
+def _rebound(scene: _Scene, motion: _Motion, guess: Array) -> tuple[Array, bool, Array] | None:
+    """Solve m_t u'' = -F_x along a normal motion.
 
-    Returns None if the iteration does not converge. F_x/F_N is linear between the samples. Sliding
+    Returns the tangential velocity after the impact, its duration, the impulse and the dissipated
+    energy; whether all springs slip throughout; and times and displacements, shape (2, n). Returns
+    None if the iteration does not converge. F_x/F_N is linear between the samples. Sliding
     is therefore exact, and so is sticking if the tangential motion has the frequency of the normal
     motion.
 
@@ -388,33 +368,7 @@ def _rebound(scene: _Scene, motion: _Motion, guess: Array) -> tuple[_Rebound, Ar
             break
     else:
         return None
-    total = float(impulse[-1])
     slides = bool(np.all(path.regime[:-1] == REGIMES.index("full_slip")))
-    dissipated = start.energy_unit * float(path.dissipation.sum())
-    after = velocity - total / mass
-    result = _Rebound(after, float(time[-1]), total, dissipated, slides)
-    return result, np.array([np.append(0.0, time), np.append(0.0, u)])
-
-
-def _difference(scene: _Scene, coarse: _Rebound, fine: _Rebound) -> float:
-    """Return the largest difference between two results, relative to the scale of each quantity."""
-    largest = _largest_velocity(scene, fine)
-    energy = scene.tangential_mass * largest**2 / 2
-    return max(
-        abs(coarse.duration / fine.duration - 1),
-        abs(coarse.velocity - fine.velocity) / largest,
-        abs(coarse.dissipated - fine.dissipated) / energy,
-    )
-
-
-def _imbalance(scene: _Scene, result: _Rebound) -> float:
-    """Return the relative difference between the work of friction and the loss of energy."""
-    before, after = scene.tangential_velocity, result.velocity
-    lost = (before - after) * (before + after)
-    work = 2 * result.dissipated / scene.tangential_mass
-    return abs(lost - work) / _largest_velocity(scene, result) ** 2
-
-
-def _largest_velocity(scene: _Scene, result: _Rebound) -> float:
-    """Return the larger tangential velocity, before or after the impact; 1 at rest."""
-    return max(abs(scene.tangential_velocity), abs(result.velocity)) or 1.0
+    dissipated = start.energy_unit * path.dissipation.sum()
+    results = np.array([velocity - impulse[-1] / mass, time[-1], impulse[-1], dissipated])
+    return results, slides, np.array([np.append(0.0, time), np.append(0.0, u)])

@@ -6,11 +6,10 @@ import numpy as np
 
 from mdr_core.elementwise import number, some, where
 from mdr_core.equivalent_1d import stick_edge
-from mdr_core.errors import InputError
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validation import extremes, first_index, require_finite
+from mdr_core.validation import extremes, reject, require_finite
 
 # Quantities of the normal contact that limit the tangential loads.
 CONTROLS: Final = {
@@ -65,13 +64,12 @@ def _by_load(
     limit, full_slip, excess = ratio * normal, _NO_FULL_SLIP, _NO_EXCESS
     force_prescribed, left = name == "tangential_force", limit - size
     if some(left <= 0):
-        if force_prescribed and some(left < 0):
-            raise InputError(
-                ("tangential", "tangential_force", *(first_index(left < 0) if size.ndim else ())),
+        if force_prescribed:
+            detail = (
                 "no equilibrium: the force exceeds friction_coefficient x normal_force; reduce it, "
-                "or prescribe tangential_displacement",
-                left < 0,
+                "or prescribe tangential_displacement"
             )
+            reject(("tangential", name), size, left < 0, detail)
         loaded = limit > 0
         # Without loads there is no slip; without a normal load any displacement is full slip.
         full_slip = where(loaded, left <= 0, size > 0)
@@ -93,9 +91,7 @@ def _by_radius(contact: NormalContact, radius: Array) -> StickZone:
     if profile.is_flat_punch:
         bad = bad | (radius > 0)
         detail = "a flat punch has no slip annulus: prescribe tangential_force or another load"
-    if some(bad):
-        index = first_index(bad) if radius.ndim else ()
-        raise InputError(("tangential", "stick_radius", *index), detail, bad)
+    reject(("tangential", "stick_radius"), radius, bad, detail)
     if profile.is_flat_punch:
         return 0 * radius, contact.coordinate + 0 * radius, _POSITIVE, all_slips, _NO_EXCESS
     c = np.maximum(radius, innermost)

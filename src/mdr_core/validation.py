@@ -103,6 +103,12 @@ def first_index(bad: Flags) -> tuple[int, ...]:
     return (int(np.flatnonzero(bad)[0]),) if bad.ndim else ()
 
 
+def reject(path: tuple[str | int, ...], given: Array, bad: Flags, detail: str) -> None:
+    """Raise InputError at the first of the given numbers that is bad."""
+    if some(bad):
+        raise InputError((*path, *(first_index(bad) if given.ndim else ())), detail, bad)
+
+
 def only_one(
     path: tuple[str | int, ...], given: Mapping[str, ArrayLike | None]
 ) -> tuple[str, Array]:

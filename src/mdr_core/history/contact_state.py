@@ -108,8 +108,8 @@ class ContactState(LoadPointResults):
     friction_coefficient: float
     polyline: Polyline
     """Polyline over depths."""
-    before: Polyline | None = None
-    """Polyline before the step of `advance` that led here; None for other states."""
+    before: Polyline
+    """Polyline before the step of `advance` that led here; the same one in other states."""
     known_edges: list[Edge] = field(init=False, default_factory=list)
     """Edges of the first vertices; a step passes the edges that it keeps to the next state."""
     quantities: ClassVar[tuple[str, ...]] = (*LoadPointResults.quantities, "slip_fronts")
@@ -191,16 +191,12 @@ class ContactState(LoadPointResults):
     @property
     def tangential_energy(self) -> float:
         """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length]."""
-        if not self.in_contact:
-            return 0.0
         vertices = TractionVertices(self._moments, self._tree)
-        return float(self.energy_unit * vertices.square[-1])
+        return float(self.energy_unit * self._tree.at_load_points(vertices.square)[0])
 
     @cached_property
     def dissipation(self) -> float:
         """Energy dissipated by friction on the step of `advance` that led here [force length]."""
-        if self.before is None:
-            return 0.0
         vertices = TractionVertices(self._moments, slip_memory.as_tree(self.before, self.polyline))
         return float(self.energy_unit * vertices.dissipation[-1])
 
@@ -253,7 +249,7 @@ def unloaded(
     require_single_positive(("material", "g_star"), g_star)
     require_single_positive(("friction_coefficient",), friction_coefficient)
     polyline = slip_memory.separated(0.0, 0.0)
-    return ContactState(profile, e_star, g_star, friction_coefficient, polyline)
+    return ContactState(profile, e_star, g_star, friction_coefficient, polyline, polyline)
 
 
 def advance(
@@ -303,6 +299,6 @@ def advance(
         require_inside(("indentation_depth",), number(depth) > largest[0], profile)
     line, kept = slip_memory.moved(state.polyline, depth, displacement / state.displacement_ratio)
     moduli = state.e_star, state.g_star, state.friction_coefficient
-    following = ContactState(profile, *moduli, line, before=state.polyline)
+    following = ContactState(profile, *moduli, line, state.polyline)
     following.known_edges.extend(state.known_edges[:kept])
     return following

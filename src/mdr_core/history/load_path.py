@@ -283,8 +283,6 @@ def build(
 
 def _along(points: Array, count: int) -> Array:
     """Return the first point, and the samples that divide each step to the next point evenly."""
-    if count == 1:
-        return points
     start, stop = points[:-1, None], points[1:, None]
     share = np.arange(1, count + 1)
     # Proportional forces stay proportional to rounding error, even where they approach zero.

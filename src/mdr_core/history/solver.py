@@ -10,19 +10,17 @@ from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, normal, validity
 from mdr_core.doubles import EPS, ROUNDING
-from mdr_core.elementwise import number
 from mdr_core.errors import InputError
 from mdr_core.history import load_path, slip_memory
-from mdr_core.history.contact_state import ContactState, Edge, unloaded
+from mdr_core.history.contact_state import ContactState, unloaded
 from mdr_core.history.load_path import UNLOADED, SampledPath, SavedState
 from mdr_core.history.slip_layout import NORMAL
-from mdr_core.history.slip_memory import Polyline
 from mdr_core.history.step_results import REGIMES, StepResults
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Indices
-from mdr_core.validation import extremes, not_negative, only_one
+from mdr_core.validation import not_negative, only_one
 
 # Location in the request of the normal load from which a history starts.
 _BEGIN: Final = ("initial_state", "normal")
@@ -53,11 +51,8 @@ class LoadHistory(validity.ResultsOverLoads):
 
     @cached_property
     def normal(self) -> NormalContact:
-        """Normal contact of every sample, with zero load in separation; one if it is constant."""
-        load = np.maximum(self.path.normal, 0.0)
-        least, most = extremes(load)
-        # A constant load is solved once, which takes less time than many equal loads.
-        given = {self.path.normal_name: number(most) if least == most else load}
+        """Normal contact of every sample, with zero load in separation."""
+        given = {self.path.normal_name: np.maximum(self.path.normal, 0.0)}
         return normal.solve(self.path.start.profile, self.e_star, **given)
 
     @property
@@ -65,31 +60,27 @@ class LoadHistory(validity.ResultsOverLoads):
         """Index of the given point at which the load step of each sample ends."""
         return self.path.step
 
-    @cached_property
+    @property
     def indentation_depth(self) -> Array:
         """d [length]; negative in separation."""
         if self.path.depth_prescribed:
             return self.path.normal
-        return self._at_samples(self.normal.indentation_depth)
+        return self.normal.indentation_depth
 
-    @cached_property
+    @property
     def normal_force(self) -> Array:
         """F_N [force]."""
-        return self._at_samples(self.normal.normal_force)
+        return self.normal.normal_force
 
     @cached_property
     def contact_radius(self) -> Array:
         """a [length]; zero in separation."""
         return np.where(self.path.normal < 0, 0.0, self.normal.contact_radius)
 
-    @cached_property
+    @property
     def elastic_energy(self) -> Array:
         """Energy stored by the normal load, int F_N dd [force length]."""
-        return self._at_samples(self.normal.elastic_energy)
-
-    def _at_samples(self, value: Array) -> Array:
-        """Return a result of the normal contact at every sample."""
-        return value if np.ndim(value) else np.full(self.path.normal.shape, value)
+        return self.normal.elastic_energy
 
     @cached_property
     def tangential_force(self) -> Array:
@@ -142,15 +133,10 @@ class LoadHistory(validity.ResultsOverLoads):
     def state(self) -> ContactState:
         """State of the contact at the end of the history."""
         vertices, line = self.results.end
-        last = vertices.tree.last
-        force = vertices.conjugate
-        if self.path.over_forces:
-            line = self._over_depths(vertices.conjugate_step[last[1:]], line)
-            force = vertices.tree.normal
-        state = replace(self.path.start, polyline=line)
-        edges = np.array([vertices.coordinate, force, vertices.shear])[:, last]
-        state.known_edges.extend(Edge(*map(number, edge)) for edge in edges.T.tolist())
-        return state
+        if self.path.over_forces and line.in_contact:
+            span = vertices.conjugate_step[vertices.tree.last[1:]]
+            line = slip_memory.stacked(span, slip_memory.as_tree(line).slope[1:])
+        return replace(self.path.start, polyline=line, before=line)
 
     @property
     def final_state(self) -> dict[str, Any]:
@@ -163,12 +149,6 @@ class LoadHistory(validity.ResultsOverLoads):
             str(self.regime[-1]),
             self.results.end.line.vertices[:-1, :NORMAL].tolist(),
         )._asdict()
-
-    def _over_depths(self, span: Array, line: Polyline) -> Polyline:
-        """Return the polyline over depths with the slopes of a polyline over reduced forces."""
-        if not line.in_contact:
-            return slip_memory.separated(min(float(self.indentation_depth[-1]), 0.0), 0.0)
-        return slip_memory.stacked(span, slip_memory.as_tree(line).slope[1:])
 
     @property
     def slip_fronts(self) -> Array:
@@ -308,17 +288,13 @@ def _require_solvable(path: SampledPath) -> None:
 
     It suffices that the largest load and the smallest load above zero have a solution.
     """
-    loads = path.normal_loads
-    least, most = extremes(loads)
-    if least <= 0 < most:
-        least = float(loads[loads > 0].min())
-    for load in dict.fromkeys((max(most, 0.0), max(least, 0.0))):
-        try:
-            given = {path.normal_name: number(load)}
-            normal.solve(path.start.profile, path.start.e_star, **given)
-        except InputError as error:
-            if error.path[:1] != ("load",):
-                raise
-            at = int(np.argmax(loads == load))
-            place = "history", "normal", path.normal_name, int(path.step[at - 1])
-            raise InputError(place if at else _BEGIN, error.detail) from None
+    loads = np.maximum(path.normal_loads, 0.0)
+    ends = np.array([loads.argmax(), np.where(loads > 0, loads, np.inf).argmin()])
+    try:
+        normal.solve(path.start.profile, path.start.e_star, **{path.normal_name: loads[ends]})
+    except InputError as error:
+        if error.path[:1] != ("load",):
+            raise
+        at = int(ends[error.path[2]])
+        place = "history", "normal", path.normal_name, int(path.step[at - 1])
+        raise InputError(place if at else _BEGIN, error.detail) from None

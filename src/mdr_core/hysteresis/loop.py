@@ -172,8 +172,6 @@ class _Loop:
         u = places / (1 + rig * 2 * g_star * float(self.contact.contact_radius))
         for _ in range(_STEPS):
             law = tangential.solve(self.contact, g_star, friction, tangential_displacement=u)
-            if not rig:
-                break
             left = places - u - rig * law.tangential_force
             step = left / (1 + rig * law.tangential_stiffness)
             if np.all(np.abs(step) <= _CONVERGED * places):

@@ -19,7 +19,7 @@ from numpy.polynomial import legendre
 
 from mdr_core import tangential
 from mdr_core.abel.displacement import Branch
-from mdr_core.doubles import EPS, LARGEST
+from mdr_core.doubles import EPS
 from mdr_core.elementwise import in_blocks
 from mdr_core.errors import InputError
 from mdr_core.fields.tangential import Traction, tractions
@@ -29,7 +29,7 @@ from mdr_core.profiles import Cone, Paraboloid
 from mdr_core.quadrature import NODES, PIECE, STEEP, composite_rule, gauss_legendre
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Chosen, Indices, Numbers
-from mdr_core.validation import require_type
+from mdr_core.validation import require_representable, require_type
 
 Contact: TypeAlias = NormalContact | TangentialContact | ContactState
 
@@ -67,10 +67,7 @@ class Foundation:
         self.sheared = bool(self.slips_from < inf)
         self.loaded = bool(load.coordinate[-1] > 0)
         # The kernel 1/rho^3 is a double.
-        if self.loaded and not 1 / LARGEST < load.radius[-1] ** 3 < LARGEST:
-            raise InputError(
-                ("profile",), "the contact radius leaves the range of double precision"
-            )
+        require_representable(("profile",), np.asarray(self.loaded), load.radius[-1] ** 3)
         radii = map(float, profile.infinite_pressure_radii)
         self.infinite_radii = [b for b in radii if self.loaded and b <= load.radius[-1]]
         if profile.is_flat_punch:

@@ -11,8 +11,7 @@ from scipy.special import ellipkm1
 
 from mdr_core import conditioning, validity
 from mdr_core.doubles import EPS
-from mdr_core.elementwise import in_blocks, some, where
-from mdr_core.errors import InputError
+from mdr_core.elementwise import in_blocks, where
 from mdr_core.materials import Material, twist_modulus
 from mdr_core.normal import NormalContact, shape_of_loads
 from mdr_core.profiles import Profile, Tabulated
@@ -21,8 +20,8 @@ from mdr_core.torsion.curve import DEEPEST, VirginCurves
 from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import (
     as_positive,
-    first_index,
     only_one,
+    reject,
     require_finite,
     require_representable,
     require_type,
@@ -229,7 +228,8 @@ def solve(
             "no equilibrium: the torque reaches the largest one, friction_coefficient x "
             "normal_force x torsion_arm; reduce it, or prescribe rotation"
         )
-        _reject(name, given, (load > 0) & (load >= largest * (1 - 4 * error)), detail)
+        beyond = (load > 0) & (load >= largest * (1 - 4 * error))
+        reject(("torsion", name), given, beyond, detail)
     elif name == "stick_radius":
         of_edge = contact.edge_errors * conditioning.narrow_annulus(edge, width).reshape(shape)
     slides &= name == "rotation"
@@ -290,27 +290,21 @@ def _states(
 
 def _slip_width(contact: NormalContact, stick: Array) -> Array:
     """a - c of prescribed stick radii [length]; raises InputError if there is no such contact."""
-    a, profile = contact.contact_radius, contact.profile
+    a, profile, path = contact.contact_radius, contact.profile, ("torsion", "stick_radius")
     outside = (stick > a) | (stick < EPS * a) | ((stick < a) & ~contact.loaded)
     detail = (
         "must lie between 2.2e-16 times the contact radius and the contact radius: as it falls to "
         "zero, the rotation grows without bound"
     )
-    _reject("stick_radius", stick, outside, detail)
+    reject(path, stick, outside, detail)
     if profile.is_flat_punch:
         detail = "a flat punch sticks up to a finite rotation: prescribe torque or rotation"
-        _reject("stick_radius", stick, (stick == a) & contact.loaded, detail)
+        reject(path, stick, (stick == a) & contact.loaded, detail)
     if contact.control == "contact_radius" or profile.is_flat_punch:
         return a - stick
     # The contact coordinate of a computed edge is accurate; its radius may not be.
     past = np.maximum(contact.coordinate - (stick - profile.first_radius), 0.0)
     return np.where(stick < a, past, 0.0)
-
-
-def _reject(name: str, given: Array, bad: Flags, detail: str) -> None:
-    if some(bad):
-        index = first_index(np.asarray(bad)) if given.ndim else ()
-        raise InputError(("torsion", name, *index), detail, bad)
 
 
 def _condition(name: str, states: Array, slides: Flags) -> Array:

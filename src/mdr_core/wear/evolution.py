@@ -18,12 +18,13 @@ from mdr_core.typing import Array
 from mdr_core.validation import (
     UNRESOLVED,
     as_numbers,
-    first_index,
+    reject,
     require_not_negative,
     require_single_positive,
     require_tolerance,
     require_type,
     require_whole,
+    single,
 )
 from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.arguments import grid, one_amplitude
@@ -299,14 +300,10 @@ def solve(
     require_whole(("resolution",), resolution)
     if not COARSEST <= resolution <= FINEST:
         raise InputError(("resolution",), f"must lie from {COARSEST} to {FINEST}")
-    for place, number in (
-        ("load", contact.contact_radius),
-        ("g_star", g_star),
-        ("friction_coefficient", friction_coefficient),
-        ("tangential", size),
-    ):
-        if np.ndim(number):
-            raise InputError((place,), "must be a single number")
+    single(("load",), contact.contact_radius)
+    single(("material", "g_star"), g_star)
+    single(("friction_coefficient",), friction_coefficient)
+    single(("tangential", name), size)
     tangential_contact = tangential.solve(contact, g_star, friction_coefficient, **{name: size})
     if tangential_contact.full_slip and contact.profile.is_flat_punch:
         detail = "full slip of a flat punch: the pressure at its edge is infinite; round the edge"
@@ -339,6 +336,5 @@ def _checked_cycles(cycles: ArrayLike) -> Array:
         raise InputError(("cycles",), "a list of at least one number is needed")
     require_not_negative(("cycles",), numbers)
     falls = np.append(False, np.diff(numbers) < 0)
-    if falls.any():
-        raise InputError(("cycles", *first_index(falls)), "must be ascending")
+    reject(("cycles",), numbers, falls, "must be ascending")
     return numbers

@@ -9,9 +9,9 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import tangential, validity
+from mdr_core import fields, tangential, validity
 from mdr_core.doubles import ADJACENT, EPS
-from mdr_core.elementwise import broadcast, some, where
+from mdr_core.elementwise import broadcast, in_blocks, some, where
 from mdr_core.errors import AccuracyError, InputError, Notice, Remedy
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
@@ -26,7 +26,7 @@ from mdr_core.validation import (
     require_single_profile,
     require_type,
 )
-from mdr_core.wear import limit_fields, limiting_stick, worn_annulus
+from mdr_core.wear import limiting_stick, worn_annulus
 from mdr_core.wear.arguments import grid, one_amplitude
 
 # Exponent of the slip width in the worn volume, with room.
@@ -157,13 +157,12 @@ class LimitingWear(validity.ContactResults):
 
         Source: notes, §9.
         """
-        unbounded, width = self.stick_zone.unbounded, self.wear_width
-        volume, flat = np.zeros(width.size), np.ravel(width)
-        # Without slip there is no annulus.
-        worn = np.flatnonzero((flat > 0) & ~np.ravel(unbounded))
-        c, step = (np.ravel(part)[worn] for part in (self.stick_zone.radius, self.stick_zone.step))
+        flat, zone = np.ravel(self.wear_width), self.stick_zone
+        # Without slip there is no annulus, and in full slip under a constant force no end of it.
+        volume, worn = np.where(flat > 0, inf, 0.0), np.flatnonzero((flat > 0) & (flat < inf))
+        c, step = (np.ravel(part)[worn] for part in (zone.radius, zone.step))
         volume[worn] = worn_annulus.worn_volume(self.normal.profile, c, flat[worn], step)
-        return where(unbounded, inf, volume.reshape(width.shape)[()])
+        return volume.reshape(self.wear_width.shape)[()]
 
     @cached_property
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
@@ -197,8 +196,19 @@ class LimitingWear(validity.ContactResults):
         Never negative, zero in the stick zone and outside the annulus. Source: mdr-5, Eqs. (5.75),
         (5.82); notes, §9. Shape and errors as for `limiting_profile`.
         """
-        r = self._radii(radius)
-        return limit_fields.worn_depth(self.stick_zone, self.wear_radius, r)
+        r, profile = self._radii(radius), self.normal.profile
+        parts = self.stick_zone.radius, self.wear_radius, self.stick_zone.step
+        c, end, step = (np.ravel(part)[:, None] for part in parts)
+        # In full slip the axis wears as well, and a flat punch wears up to its edge.
+        worn = (r <= end if profile.is_flat_punch else r < end) & ((r > c) | (c == 0)) & (step > 0)
+        result, (load, place) = np.zeros(worn.shape), np.nonzero(worn)
+        for block in in_blocks(load.size):
+            which, at, inner = load[block], r[place[block]], c[load[block], 0]
+            lag = profile.slip_integral(inner, at)
+            share = np.where(at > 0, 2 / np.pi * worn_annulus.angle(inner, at - inner), 1.0)
+            # At the outer edge of the annulus the terms cancel but for rounding error.
+            result[which, place[block]] = np.maximum(share * step[which, 0] - lag, 0.0)
+        return result.reshape(self.wear_radius.shape + r.shape)
 
     def pressure(self, radius: ArrayLike) -> Array:
         """Return the pressure in the limit, (loads, m), or (m,) for a single load [pressure].
@@ -212,8 +222,14 @@ class LimitingWear(validity.ContactResults):
         ------
         InputError : a radius that is negative or not finite.
         """
-        e_star = np.asarray(self.normal.e_star)
-        return limit_fields.pressure(self.stick_zone, e_star, checked_radii(radius))
+        zone, normal, r = self.stick_zone, self.normal, checked_radii(radius)
+        c, step = (np.asarray(part)[..., None] for part in (zone.radius, zone.step))
+        inside = (r <= c) & (c > 0) & (step > 0)
+        root = np.sqrt(np.where(inside, (c - r) * (c + r), 1.0))
+        unworn = NormalContact(normal.profile, 1.0, zone.coordinate, normal.control)
+        with np.errstate(divide="ignore"):
+            whole = fields.pressure(unworn, r) + np.where(inside, step / (np.pi * root), 0.0)
+        return np.asarray(np.asarray(normal.e_star)[..., None] * whole)
 
     def grid(self, points: int) -> Array:
         """Return radii from 0 to a quarter beyond the largest worn annulus [length], (points,).

@@ -39,7 +39,7 @@ class LimitingStick:
     step: Array
     """d - g(c) in the limit [length], free of cancellation."""
     slip_width: Array
-    """About the width outside c in which g grows by the step [length]; zero without slip."""
+    """Width of the slip annulus before wear, or outside c [length]; zero without slip."""
     separated: Flags
     """Full slip at a constant depth: the contact wears until nothing touches."""
     unbounded: Flags
@@ -65,10 +65,7 @@ def by_forces(contact: TangentialContact, amplitude: Array) -> LimitingStick:
     In the limit the stick zone carries the force: F_x = 2 mu E* c (d - g(c)). Source: notes, §9.
     """
     step = _step_of_force(contact, amplitude, contact.stick_radius)
-    before = contact.tangential_displacement / contact.displacement_ratio
-    grown = np.maximum(step, before) / where(before > 0, before, 1.0)
-    moved = contact.stick_coordinate, contact.stick_radius, grown * contact.slip_width
-    return _from(contact, step, unbounded=contact.full_slip, moved=moved)
+    return _from(contact, step, unbounded=contact.full_slip)
 
 
 def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> LimitingStick:
@@ -209,34 +206,27 @@ def _from(
 
     With a `width_error` the stick radius has moved, else it is that before wear.
     """
+    normal, slides = contact.normal, separated | unbounded
     unworn = contact.stick_coordinate, contact.stick_radius, contact.slip_width
-    normal = contact.normal
-    # In full slip c = 0, and all of the depth is worn.
-    depth = where(unbounded, inf, normal.indentation_depth)
-    lost = 0.0, 0.0, normal.contact_radius, depth
-    found = zip(lost, (*(moved or unworn), step), strict=True)
-    slides = separated | unbounded
-    coordinate, radius, slip_width, step = (where(slides, *pair) for pair in found)
-    # Without a normal load nothing wears.
-    loaded = normal.coordinate > 0
-    # A flat punch either sticks or is in full slip.
-    rests = (slip_width <= 0) | ~loaded
+    coordinate, radius, slip_width = moved or unworn
     if width_error is None:
         # The coordinate resolves the distance from a flat.
         flat = where(contact.full_slip, 0.0, normal.profile.first_radius)
         width_error, error = full(0.0, slip_width), contact.stick_error - ROUNDING * flat
     else:
         beyond = normal.contact_radius - normal.profile.first_radius
-        error = normal.edge_errors * beyond + width_error * slip_width
-    parts = (
-        where(rests, normal.coordinate, coordinate),
-        where(rests, normal.contact_radius, radius),
-        where(rests, 0.0, step),
-        where(rests, 0.0, slip_width),
-        separated & loaded,
-        unbounded & loaded,
-        width_error,
-        error,
+        width = where(slides, normal.contact_radius, slip_width)
+        error = normal.edge_errors * beyond + width_error * width
+    # Without a normal load nothing wears, and a flat punch either sticks or is in full slip.
+    loaded = normal.coordinate > 0
+    rests = ~loaded | ((slip_width <= 0) & ~slides)
+    depth = where(unbounded, inf, normal.indentation_depth)
+    cases = (
+        (normal.coordinate, 0.0, coordinate),
+        (normal.contact_radius, 0.0, radius),
+        (0.0, depth, step),
+        (0.0, normal.contact_radius, slip_width),
     )
-    spread = (broadcast(part, contact.width.shape) for part in parts)
-    return LimitingStick(normal.profile, *spread)
+    parts = [where(rests, still, where(slides, lost, found)) for still, lost, found in cases]
+    parts += [separated & loaded, unbounded & loaded, width_error, error]
+    return LimitingStick(normal.profile, *(broadcast(part, contact.width.shape) for part in parts))
