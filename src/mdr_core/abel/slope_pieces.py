@@ -157,9 +157,9 @@ class SlopePieces:
             product[power : power + len(half_force)] += 2 * row * half_force
         return PPoly(product[::-1], self.edges).antiderivative()
 
-    def slope(self, x: Array) -> Array:
-        """g'(x) [1]."""
-        return self._slope(x)[()]
+    def slope(self, x: Array, order: int = 0) -> Array:
+        """g'(x) [1], or a derivative of it of this order."""
+        return self._slope(x, order)[()]
 
     def depth(self, x: Array) -> Array:
         """g(x) = int_0^x g' [length]."""
