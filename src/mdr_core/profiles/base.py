@@ -23,8 +23,7 @@ from mdr_core.abel.displacement import (
 from mdr_core.abel.stress import stress_integral
 from mdr_core.doubles import EPS, LOG_RANGE
 from mdr_core.elementwise import full, number, some, where
-from mdr_core.errors import Notice
-from mdr_core.inversion import Function, invert
+from mdr_core.inversion import invert
 from mdr_core.profiles.power_functions import StickRatios
 from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.typing import Array, Flags, Indices, Parameter
@@ -44,7 +43,7 @@ NORMAL_QUANTITIES: Final = (
 FIELDS: Final = ("pressure", "shear_stress", "slip", "normal_displacement")
 # Attributes that completion offers, in addition to the parameters and the attributes of a table.
 _SHAPE: Final = ("f", "df", "g", "dg", "r", "breaks", "domain", "infinite_pressure_radii")
-_FOR_USERS: Final = ("kind", "formula", "closed_forms", "notices", *_SHAPE)
+_FOR_USERS: Final = ("kind", "formula", "closed_forms", *_SHAPE)
 _NO_BREAKS: Final = np.empty(0)
 
 
@@ -101,11 +100,6 @@ class Profile(ABC):
         part = object.__new__(type(self))
         vars(part).update({**self.parameters, **parameters})
         return part
-
-    @property
-    def notices(self) -> tuple[Notice, ...]:
-        """Warnings about the profile itself."""
-        return ()
 
     @property
     def normal_method(self) -> str:
@@ -277,6 +271,15 @@ class Profile(ABC):
         """Derivative of F_N/E* with respect to the contact coordinate s, 2 a d'(s)."""
         return 2 * self.contact_radius(coordinate) * self.depth_slope(coordinate)
 
+    def load_and_slope(self, coordinate: Array, *, of_force: bool) -> tuple[Array, Array]:
+        """F_N/E* [length^2], or the depth [length], and its derivative.
+
+        Source: notes, §1.
+        """
+        if of_force:
+            return self.reduced_force(coordinate), self.force_slope(coordinate)
+        return self.depth(coordinate), self.depth_slope(coordinate)
+
     def reduced_energy(self, coordinate: Array) -> Array:
         """Elastic energy over E*, int_0^a (d - g)^2 dx = int_0^d F_N/E* dd [length^3]."""
         depth = self.depth(coordinate)
@@ -299,37 +302,34 @@ class Profile(ABC):
 
     def coordinate_from_depth(self, depth: Array) -> Array:
         """Inverse of `depth`, iterated where it has no closed form."""
-        if self.largest_loads is not None:
-            beyond = depth > self.largest_loads[0]
-            require_inside(("load", "indentation_depth"), beyond, self)
-        return self._root(self.depth, self.depth_slope, depth)
+        return self._root(depth, of_force=False)
 
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
         """Inverse of `reduced_force`, iterated where it has no closed form."""
-        if self.largest_loads is not None:
-            beyond = reduced_force > self.largest_loads[1]
-            require_inside(("load", "normal_force"), beyond, self)
-        return self._root(self.reduced_force, self.force_slope, reduced_force)
+        return self._root(reduced_force, of_force=True)
 
-    def _root(self, load: Function, slope: Function, target: Array) -> Array:
+    def _root(self, target: Array, *, of_force: bool) -> Array:
         """Contact coordinate at which a load has a value within the domain."""
+        if self.largest_loads is not None:
+            name = "normal_force" if of_force else "indentation_depth"
+            require_inside(("load", name), target > self.largest_loads[of_force], self)
+
         # At a pole the load is infinite, and no power is known.
         scale = number(1.0) * np.minimum(self.scale, self.pole / 2)
         with np.errstate(all="ignore"):
             # The first approximation takes the load as a power of the coordinate, fitted at the
             # scale.
-            at_scale = load(scale)
-            ratio = np.log(target / at_scale) * (at_scale / (scale * slope(scale)))
+            load, slope = self.load_and_slope(scale, of_force=of_force)
+            ratio = np.log(target / load) * (load / (scale * slope))
             # Where a load hardly rises at the scale, this power leaves the range of doubles.
             start = scale * np.exp(np.clip(ratio, -LOG_RANGE, LOG_RANGE))
-            start = where(start > 0, start, scale)
-        low, high = (full(end, start) for end in (0.0, self.domain))
+        start = np.minimum(where(start > 0, start, scale), self.domain)
 
         def sloped(s: Array) -> tuple[Array, Array]:
-            value = load(s)
-            return value, s * slope(s) / value
+            value, slope = self.load_and_slope(s, of_force=of_force)
+            return value, s * slope / value
 
-        start = where(high < start, high, start)
+        low, high = (full(end, start) for end in (0.0, self.domain))
         return invert(sloped, target, start, low, high, self.kind)
 
     # Methods over the slip annulus.
