@@ -4,7 +4,7 @@ The interface is one class, and therefore one long file.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from math import inf
 from typing import Any, ClassVar, Final, Self
@@ -65,8 +65,6 @@ class Profile(ABC):
     closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
     # Closed forms of the stick edge in contact coordinates, by u_x/u_max and by F_x/(mu F_N).
     stick_ratios: ClassVar[StickRatios | None] = None
-    # Bound on the relative rounding error of the closed forms.
-    rounding: Parameter = 3e-14
 
     def __post_init__(self) -> None:
         """Raise InputError unless all parameters are positive and finite."""
@@ -115,7 +113,7 @@ class Profile(ABC):
 
     def rounding_at(self, coordinate: Array) -> Parameter:
         """Bound on the relative rounding error of the closed forms at a contact coordinate."""
-        return self.rounding
+        return 3e-14
 
     # The shape.
 
@@ -283,10 +281,10 @@ class Profile(ABC):
     def reduced_energy(self, coordinate: Array) -> Array:
         """Elastic energy over E*, int_0^a (d - g)^2 dx = int_0^d F_N/E* dd [length^3]."""
         depth = self.depth(coordinate)
+        return self._integral(lambda s: np.square(depth - self.depth(s)), coordinate)
 
-        def density(s: Array) -> Array:
-            return np.square(depth - self.depth(s))
-
+    def _integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
+        """Integral of a density over the contact coordinate, from the axis to the edge."""
         return power_law_integral(density, coordinate, self.scale)
 
     def coordinate_from_load(self, load: Array, *, of_force: bool) -> Array:
@@ -448,11 +446,8 @@ class Profile(ABC):
 
     def axis_stress(self, coordinate: Array) -> Array:
         """Stress integral at the axis of each contact, (1/pi) int_0^a g'(x)/x dx [1]."""
-
-        def density(s: Array) -> Array:
-            return self.depth_slope(s) / self.contact_radius(s)
-
-        return power_law_integral(density, coordinate, self.scale) / np.pi
+        stress = self._integral(lambda s: self.depth_slope(s) / self.contact_radius(s), coordinate)
+        return stress / np.pi
 
     def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
         """Stress integral (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx [1].

@@ -271,8 +271,7 @@ class Power(PowerLaw):
         name for name in NORMAL_QUANTITIES if name != "maximum_pressure"
     )
 
-    @property
-    def rounding(self) -> Parameter:  # type: ignore[override]  # a constant of most kinds
+    def rounding_at(self, coordinate: Array) -> Parameter:
         # r^n has n times the relative rounding error of the scaled radius.
         return 2e-14 + 8e-15 * self.exponent
 

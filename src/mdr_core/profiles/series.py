@@ -100,20 +100,17 @@ class Series(Profile):
         slopes = (np.array([np.sign(c), each, n]) for each in (size, size + np.log(kappa(n))))
         return min(map(first_negative_radius, slopes))
 
-    @property
-    def rounding(self) -> float:  # type: ignore[override]  # a constant of most kinds
-        return 4e-14 + 8e-15 * max(self.exponents)
-
     def rounding_at(self, coordinate: Array) -> Parameter:
         """The bound includes cancellation between positive and negative terms. See `Profile`."""
+        rounding = 4e-14 + 8e-15 * max(self.exponents)
         if self._positive:
-            return self.rounding
+            return rounding
         terms = np.array(
             [(depth, 2 * n / (n + 1) * depth) for depth, n in self._depths(coordinate)]
         )
         with np.errstate(all="ignore"):
             lost = (np.abs(terms).sum(axis=0) / np.abs(terms.sum(axis=0))).max(axis=0)
-        return self.rounding + 8 * EPS * where(coordinate > 0, lost, 0.0)
+        return rounding + 8 * EPS * where(coordinate > 0, lost, 0.0)
 
     @property
     def scale(self) -> Parameter:

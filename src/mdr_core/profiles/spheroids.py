@@ -60,7 +60,7 @@ class Spheroid(Profile):
 
     def rounding_at(self, coordinate: Array) -> Parameter:
         """Next to the equator the rounding error of R - a dominates. See `Profile`."""
-        return self.rounding + EPS / 2 * self.radius / (self.radius - coordinate)
+        return super().rounding_at(coordinate) + EPS / 2 * self.radius / (self.radius - coordinate)
 
     def f(self, radius: Array) -> Array:
         root = np.sqrt((self.radius - radius) * (self.radius + radius))
@@ -121,15 +121,8 @@ class Spheroid(Profile):
         smooth = integrate(h, length, start)
         return self.height / (pi * big) * stretch * (length + smooth)
 
-    def reduced_energy(self, coordinate: Array) -> Array:
-        depth = self.depth(coordinate)
-        return self._integral(lambda x: np.square(depth - self.g(x)), coordinate)
-
-    def axis_stress(self, coordinate: Array) -> Array:
-        return self._integral(lambda x: self.dg(x) / x, coordinate) / pi
-
     def _integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
-        """int_0^a density(x) dx over v = artanh(x/R), which resolves the pole at the equator."""
+        """Over v = artanh(x/R), which resolves the pole at the equator. See `Profile`."""
 
         def over_v(v: Array) -> Array:
             return density(self.radius * np.tanh(v)) * (self.radius / np.square(np.cosh(v)))

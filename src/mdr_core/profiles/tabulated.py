@@ -95,7 +95,6 @@ class Tabulated(Profile):
         self.meets_points = uncertainty is not None and self.fit.rms <= _MET * uncertainty
         """True if the profile deviates from the points by no more than their uncertainty."""
         self._spline = SlopePieces(self.fit.edges, self.fit.rows)
-        self.rounding = _ROUNDING
 
     @classmethod
     def from_area_function(
@@ -172,6 +171,9 @@ class Tabulated(Profile):
     @property
     def normal_method(self) -> str:
         return "piecewise_moments"
+
+    def rounding_at(self, coordinate: Array) -> Parameter:
+        return _ROUNDING
 
     @property
     def flattens(self) -> bool:
@@ -255,7 +257,7 @@ class Tabulated(Profile):
 
     def depth_slope_beyond(self, coordinate: Array, start: Array, past: Array) -> Array:
         """Parameters: see `Profile`."""
-        slope = self._spline.slope(coordinate)
+        slope = self._spline.slope(coordinate)[()]
         for factor, shape in self._flanks:
             b = shape.flat_radius
             above = where(start == b, past, np.maximum(coordinate - b, 0.0))
@@ -271,10 +273,10 @@ class Tabulated(Profile):
     def reduced_energy(self, coordinate: Array) -> Array:
         """Closed for a spline; with flanks int_0^a F_N(x)/E* g'(x) dx."""
         if not self._flanks:
-            return self._spline.energy(coordinate)
-        return self._integral(self.reduced_force, coordinate)
+            return self._spline.energy(coordinate)[()]
+        return self._slope_integral(self.reduced_force, coordinate)
 
-    def _integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
+    def _slope_integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
         """int_0^a density(x) g'(x) dx, by Gauss's rule on each piece."""
         # Halves of the last radius, so that 1/x is smooth on a piece.
         a, halves = np.ravel(coordinate), self._end / 2.0 ** np.arange(1, -np.log2(EPS))
@@ -377,7 +379,7 @@ class Tabulated(Profile):
         return max(first, 0.0), np.maximum.accumulate(np.append(0.0, beyond.max(axis=0)))
 
     def axis_stress(self, coordinate: Array) -> Array:
-        stress = self._integral(np.reciprocal, coordinate) / np.pi
+        stress = self._slope_integral(np.reciprocal, coordinate) / np.pi
         return stress if self._spline.smooth_tip else stress + np.inf
 
     def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
