@@ -126,7 +126,6 @@ def stick_edge(
         where(start > 0, start, 1.0),
         full(0.0, target),
         where(coordinate > 0, coordinate, 2.0),
-        f"{profile.kind}'s slip annulus",
     )
     return where(early, coordinate - width, late), where(early, width, coordinate - late)
 

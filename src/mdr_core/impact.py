@@ -293,7 +293,7 @@ def _largest_coordinates(profile: Profile, energy: Array) -> Array:
     goal = np.ravel(energy)
     low, high = np.zeros_like(goal), np.full_like(goal, profile.domain)
     with np.errstate(all="ignore"):
-        found = invert(stored, goal, np.minimum(high / 2, 1.0), low, high, profile.kind)
+        found = invert(stored, goal, np.minimum(high / 2, 1.0), low, high)
     return found.reshape(np.shape(energy))
 
 

@@ -328,7 +328,7 @@ class Profile(ABC):
             return value, s * slope / value
 
         low, high = (full(end, start) for end in (0.0, self.domain))
-        return invert(sloped, target, start, low, high, self.kind)
+        return invert(sloped, target, start, low, high)
 
     # Methods over the slip annulus.
 
