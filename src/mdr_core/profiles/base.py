@@ -44,7 +44,6 @@ FIELDS: Final = ("pressure", "shear_stress", "slip", "normal_displacement")
 # Attributes that completion offers, in addition to the parameters and the attributes of a table.
 _SHAPE: Final = ("f", "df", "g", "dg", "r", "breaks", "domain", "infinite_pressure_radii")
 _FOR_USERS: Final = ("kind", "formula", "closed_forms", *_SHAPE)
-_NO_BREAKS: Final = np.empty(0)
 
 
 class Profile(ABC):
@@ -230,7 +229,7 @@ class Profile(ABC):
     @property
     def coordinate_breaks(self) -> Array:
         """Contact coordinates at which the depth is not smooth, ascending; in a sweep by case."""
-        return _NO_BREAKS
+        return np.empty(0)
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
         """Contact coordinate of a contact radius."""

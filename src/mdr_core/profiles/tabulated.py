@@ -356,27 +356,27 @@ class Tabulated(Profile):
         return np.array(found).T.reshape(len(kernels), low.size)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
-        """By the largest increase of h = g'(x)/x on the pieces. See `Profile`."""
-        first = min(self._breaks, default=np.inf)
-        if not self._spline.smooth_tip:
-            return coordinate < 0
-        piece = self.fit.edges[1:-1].searchsorted(coordinate, side="right")
-        height = self._spline.slope(coordinate) / np.where(coordinate > 0, coordinate, 1.0)
-        next_to_axis, beyond = self._increase
-        # Where h' > 0 on the axis, the pressure rises by no more than this rounding error.
-        next_to_axis *= -np.log(_ROUNDING) / 2
-        rise = next_to_axis * coordinate + beyond[piece] * np.square(coordinate)
-        return (coordinate < first) & (height > 0) & (rise <= height)
+        return coordinate < self._falls_up_to
 
     @cached_property
-    def _increase(self) -> tuple[float, Array]:
-        """Largest h' on the first piece, and h'/x beyond it up to each piece, sampled, >= 0."""
+    def _falls_up_to(self) -> float:
+        """Radius up to which the pressure falls from the axis [length]. See `falls_from_axis`.
+
+        The increase of h = g'(x)/x is sampled on the pieces.
+        """
+        if not self._spline.smooth_tip:
+            return 0.0
         edges, rows, share = self.fit.edges, self.fit.rows, np.linspace(0.0, 1.0, _SAMPLES)
-        # The constant of the slope is zero: h' = sum (k - 1) c_k x^(k - 2).
-        first = polyval(edges[1] * share, rows[2:, 0] * np.arange(1.0, len(rows) - 1)).max()
-        x = edges[1:-1] + np.diff(edges[1:]) * share[:, None]
-        beyond = (x * self._spline.slope(x, 1) - self._spline.slope(x)) / x**3
-        return max(first, 0.0), np.maximum.accumulate(np.append(0.0, beyond.max(axis=0)))
+        # On the first piece h' = sum (k - 1) c_k x^(k - 2).
+        tip = polyval(edges[1] * share, rows[2:, 0] * np.arange(1.0, len(rows) - 1)).max()
+        x = edges[:-1, None] + np.diff(edges)[:, None] * share[1:]
+        x, slope = x.ravel(), self._spline.slope(x.ravel())
+        beyond = np.where(x > edges[1], (x * self._spline.slope(x, 1) - slope) / x**3, 0.0)
+        # Where h' > 0 on the axis, the pressure rises by no more than this rounding error.
+        rise = -np.log(_ROUNDING) / 2 * max(tip, 0.0) * x
+        rise += np.maximum.accumulate(np.maximum(beyond, 0.0)) * np.square(x)
+        ends = (slope <= 0) | (rise > slope / x) | (x >= min(self._breaks, default=np.inf))
+        return float(x[ends].min(initial=np.inf))
 
     def axis_stress(self, coordinate: Array) -> Array:
         stress = self._slope_integral(np.reciprocal, coordinate) / np.pi
