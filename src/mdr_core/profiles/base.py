@@ -432,8 +432,7 @@ class Profile(ABC):
 
     def force_within(self, x: Array) -> Array:
         """2 int_0^x x g'(x) dx, zero on a flat [length^2]."""
-        flat = self.contact_radius(np.zeros_like(x))
-        return self.reduced_force(self.coordinate_from_radius(np.maximum(x, flat)))
+        return self.reduced_force(self.coordinate_from_radius(np.maximum(x, self.first_radius)))
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         """True where the pressure is known to fall from the axis to the contact edge.
