@@ -58,12 +58,10 @@ def invert(function: Sloped, target: Array, start: Array, low: Array, high: Arra
             value, slope = function(s)
             residual = np.log(goal / value)
             known = (slope > 0) & (slope < inf)
-            step, longest = residual / slope, _LAST_BUT_ONE
-            if not every(known):
-                # Where the slope is not finite, the residual gives only the direction, and
-                # convergence is linear.
-                step = where(known, step, residual)
-                longest = where(known, _LAST_BUT_ONE, ROUNDING)
+            # Where the slope is not finite, the residual gives only the direction, and convergence
+            # is linear.
+            step = where(known, residual / slope, residual)
+            longest = where(known, _LAST_BUT_ONE, ROUNDING)
             size = abs(step)
             # A short step may merely mean that the function is steep here.
             short = (abs(residual) <= _LAST_BUT_ONE) & (size <= longest)
