@@ -11,7 +11,7 @@ import numpy as np
 
 from mdr_core.doubles import ADJACENT, EPS, ROUNDING, TINY
 from mdr_core.elementwise import full, some, where
-from mdr_core.equivalent_1d import NARROW, load_and_slope, stick_edge
+from mdr_core.equivalent_1d import NARROW, stick_edge
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags
@@ -49,13 +49,13 @@ def near_full_slip(
     if not some(late):
         return full(0.0, ratio)
     high, low = ends[0], np.maximum(ends[1], TINY)
-    other = load_and_slope(profile, of_force=not force_prescribed)
+    other = profile.depth if force_prescribed else profile.reduced_force
     with np.errstate(all="ignore"):
-        load, slope = load_and_slope(profile, of_force=force_prescribed)(low)
-        other_load, other_slope = other(low)
+        load, slope = profile.load_and_slope(low, of_force=force_prescribed)
+        other_load, other_slope = profile.load_and_slope(low, of_force=not force_prescribed)
         moved = load / (slope * np.maximum(1 - ratio, EPS / 2))
         # The energy of a narrow annulus grows with the cube of its width.
-        condition = 3 * moved * other_slope / (other(high)[0] - other_load)
+        condition = 3 * moved * other_slope / (other(high) - other_load)
         if edges:
             c, a = profile.contact_radius(low), profile.contact_radius(high)
             condition = np.stack(np.broadcast_arrays(moved / c, moved / (a - c), condition))

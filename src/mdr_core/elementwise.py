@@ -76,8 +76,7 @@ def piecewise(
 
 def common_shape(*values: Any) -> tuple[int, ...]:
     """Return the shape to which numbers and arrays broadcast, or raise ValueError."""
-    shapes = {getattr(value, "shape", ()) for value in values}
-    return shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
+    return np.broadcast_shapes(*map(np.shape, values))
 
 
 def broadcast(value: Any, shape: tuple[int, ...]) -> Any:

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.elementwise import every, full, in_order, is_number, some, where
-from mdr_core.inversion import Function, Sloped, invert
+from mdr_core.inversion import Function, invert
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import NODES, gauss_legendre
 from mdr_core.typing import Array
@@ -27,19 +27,6 @@ amplify rounding errors at most 20-fold. Loads that differ from the full-slip lo
 part of it are ill-conditioned (`conditioning`)."""
 # Slope at a coordinate, which is also given as a break and the distance from the break.
 _Slope = Callable[[Array, Array, Array], Array]
-
-
-def load_and_slope(profile: Profile, *, of_force: bool) -> Sloped:
-    """Return the load and its derivative as a function of the contact coordinate.
-
-    The load is F_N/E* [length^2], or the depth [length]. Source: notes, §1.
-    """
-    load, slope = (
-        (profile.reduced_force, profile.force_slope)
-        if of_force
-        else (profile.depth, profile.depth_slope)
-    )
-    return lambda coordinate: (load(coordinate), slope(coordinate))
 
 
 def coordinate_from_radius(profile: Profile, contact_radius: Array) -> Array:
@@ -108,9 +95,9 @@ def stick_edge(
         inner, annulus = closed[of_force](ratio, rest)
         return coordinate * inner, coordinate * annulus
     step = force_step if of_force else depth_step
-    function = load_and_slope(profile, of_force=of_force)
+    slope_at = profile.force_slope if of_force else profile.depth_slope
     with np.errstate(divide="ignore", invalid="ignore"):
-        total, first = function(coordinate)
+        total, first = profile.load_and_slope(coordinate, of_force=of_force)
     if not is_number(ratio * total):
         coordinate, total, ratio, rest = np.broadcast_arrays(coordinate, total, ratio, rest)
     early = ratio < NARROW
@@ -131,7 +118,7 @@ def stick_edge(
     def sloped(width: Array) -> tuple[Array, Array]:
         stick = coordinate - width
         value = step(profile, coordinate, width, stick)
-        return value, width * function(stick)[1] / value
+        return value, width * slope_at(stick) / value
 
     width = invert(
         sloped,
@@ -139,7 +126,6 @@ def stick_edge(
         where(start > 0, start, 1.0),
         full(0.0, target),
         where(coordinate > 0, coordinate, 2.0),
-        f"{profile.kind}'s slip annulus",
     )
     return where(early, coordinate - width, late), where(early, width, coordinate - late)
 
@@ -158,15 +144,10 @@ def _step(
     narrow = width <= limit
     if every(narrow):
         return _narrow_step(slope, high, width, below)
-    if not some(narrow) or profile.swept:
-        # The functions use the parameters of all cases, so that no case can be left out.
-        wide = function(high) - function(where(low < 0, 0.0, low))
-        part = _narrow_step(slope, high, where(narrow, width, 0.0), below) if some(narrow) else wide
-        return where(narrow, part, wide)
-    result = np.zeros(narrow.shape)
-    result[~narrow] = function(high[~narrow]) - function(np.maximum(low[~narrow], 0.0))
-    result[narrow] = _narrow_step(slope, high[narrow], width[narrow], below[narrow])
-    return result
+    wide = function(high) - function(where(low < 0, 0.0, low))
+    if not some(narrow):
+        return wide
+    return where(narrow, _narrow_step(slope, high, where(narrow, width, 0.0), below), wide)
 
 
 def _narrow_step(slope: _Slope, high: Array, width: Array, below: Array) -> Array:

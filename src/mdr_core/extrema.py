@@ -125,7 +125,7 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
         raise InputError((*path, *first_index(beyond)), detail, beyond)
     start, low, high = (full(each, target) for each in (last / 2, 0.0, where(end < inf, last, inf)))
     sloped = partial(pressure_and_slope, profile)
-    return invert(sloped, target, start, low, high, profile.kind)
+    return invert(sloped, target, start, low, high)
 
 
 def largest_with(profile: Profile, edge: Array, loaded: Flags, added: _Field) -> Array:

@@ -264,7 +264,7 @@ def _largest_coordinates(profile: Profile, energy: Array) -> Array:
 
     low, high = full(0.0, energy), full(profile.domain, energy)
     with np.errstate(all="ignore"):
-        return invert(stored, energy, np.minimum(high / 2, 1.0), low, high, profile.kind)
+        return invert(stored, energy, np.minimum(high / 2, 1.0), low, high)
 
 
 def _refined(scene: _Scene, rtol: float) -> tuple[Array, bool, float]:

@@ -7,8 +7,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.doubles import EPS, LARGEST, ROUNDING, TINY
-from mdr_core.elementwise import every, some, where
-from mdr_core.errors import DefectError
+from mdr_core.elementwise import every, where
 from mdr_core.typing import Array
 
 Function = Callable[[Array], Array]
@@ -28,14 +27,7 @@ _ALONE: Final = 20
 _LAST_BUT_ONE: Final = 1e-10
 
 
-def invert(
-    function: Sloped,
-    target: Array,
-    start: Array,
-    low: Array,
-    high: Array,
-    name: str,
-) -> Array:
+def invert(function: Sloped, target: Array, start: Array, low: Array, high: Array) -> Array:
     """Return s with function(s) = target for an increasing function.
 
     Newton's method in log(s) and log(function), in which the functions of all profiles are nearly
@@ -50,16 +42,11 @@ def invert(
     target : values >= 0; where it is zero, `low` is returned.
     start : first approximation, inside the bracket.
     low, high : bracket of the root; `high` may be infinite.
-    name : name of the function, for the error message.
 
     Returns
     -------
     Array of the common shape. It is zero or infinite where the root is not representable, and NaN
     where a value of the function is not.
-
-    Raises
-    ------
-    DefectError : the iteration does not converge.
     """
     positive = target > 0
     goal = where(positive, target, 1.0)
@@ -71,12 +58,10 @@ def invert(
             value, slope = function(s)
             residual = np.log(goal / value)
             known = (slope > 0) & (slope < inf)
-            step, longest = residual / slope, _LAST_BUT_ONE
-            if not every(known):
-                # Where the slope is not finite, the residual gives only the direction, and
-                # convergence is linear.
-                step = where(known, step, residual)
-                longest = where(known, _LAST_BUT_ONE, ROUNDING)
+            # Where the slope is not finite, the residual gives only the direction, and convergence
+            # is linear.
+            step = where(known, residual / slope, residual)
+            longest = where(known, _LAST_BUT_ONE, ROUNDING)
             size = abs(step)
             # A short step may merely mean that the function is steep here.
             short = (abs(residual) <= _LAST_BUT_ONE) & (size <= longest)
@@ -102,11 +87,7 @@ def invert(
             # The rounding error of the middle itself is up to two spacings of doubles on either
             # side.
             settling = last | (high - low <= where(high < inf, 2 * EPS * high, 0.0))
-    root = where(positive, where(s < root_at_zero, root_at_zero, s), root_at_zero)
-    if every(done):
-        return root
-    if some(known & ~done):
-        raise DefectError(f"the inverse of a {name} did not converge")
+    root = where(positive, np.maximum(s, root_at_zero), root_at_zero)
     return where(done, root, np.nan)
 
 

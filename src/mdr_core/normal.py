@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from mdr_core import half_space, validity
 from mdr_core.doubles import ADJACENT, LARGEST, ROUNDING
 from mdr_core.elementwise import broadcast, common_shape, every, some, where
-from mdr_core.equivalent_1d import coordinate_from_radius, load_and_slope
+from mdr_core.equivalent_1d import coordinate_from_radius
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import coordinate_from_pressure, largest_stress, pressure_and_slope
 from mdr_core.materials import Material, normal_modulus
@@ -191,21 +191,22 @@ class NormalContact(validity.ResultsOverLoads):
             return rounding + _OF_MAXIMUM * (profile.steepness + 1) / known
         if self.control == "contact_radius" or not (profile.flattens or profile.steepens):
             return rounding
-        function, error = load_and_slope(profile, of_force=self.control == "normal_force"), rounding
+        of_force, error = self.control == "normal_force", rounding
         with np.errstate(divide="ignore", invalid="ignore"):
             if profile.flattens:
                 # Where g' falls to zero, the relative change of the contact radius exceeds that of
                 # the load. It is at most the root of the rounding error of the load.
                 inside = self.coordinate * (1 - np.sqrt(rounding))
-                load, slope = function(inside)
+                load, slope = profile.load_and_slope(inside, of_force=of_force)
                 condition = load / (inside * slope)
                 error = error * where(condition > 1, condition, 1.0)
             if profile.steepens:
                 # Just beyond a break the load may change by more than the contact radius, in
                 # relative terms.
                 beyond = np.minimum(self.coordinate * (1 + ADJACENT), profile.domain)
-                load = function(self.coordinate)[0]
-                rise = function(beyond)[0] / load - 1
+                function = profile.reduced_force if of_force else profile.depth
+                load = function(self.coordinate)
+                rise = function(beyond) / load - 1
                 error = np.maximum(error, where(load > 0, rise, 0.0))
         return error
 
@@ -219,7 +220,7 @@ class NormalContact(validity.ResultsOverLoads):
 
     def warnings_with(self, error: float, limit: float = ACCURACY) -> tuple[Notice, ...]:
         """Return the warnings about profile and loads, and about an error above a limit."""
-        found = [*self.profile.notices, *validity.notices(self.findings)]
+        found = validity.notices(self.findings)
         if error > limit:
             found.append(inaccurate(error, limit))
         return tuple(found)

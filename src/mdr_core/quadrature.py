@@ -87,10 +87,9 @@ def cumulative_rule(points: int) -> tuple[Array, Array, Array]:
     Columns, shape (points, 1); the weights of the value at node j are [j, :, 0].
     """
     nodes, _ = gauss_legendre(points)
-    vander = legendre.legvander(nodes, points - 1)
-    integrals = [legendre.legint(row, lbnd=-1) for row in np.eye(points)]
-    values = np.stack([legendre.legval(nodes, row) for row in integrals], axis=1)
-    cumulative = (values @ np.linalg.inv(vander)).T / 2
+    # Of Legendre polynomials, and from these of Lagrange's at the nodes.
+    integrals = legendre.legval(nodes, legendre.legint(np.eye(points), lbnd=-1))
+    cumulative = np.linalg.solve(legendre.legvander(nodes, points - 1).T, integrals) / 2
     shares, weights = composite_rule(points, 1)
     return shares[:, None], weights[:, None], cumulative[:, :, None]
 

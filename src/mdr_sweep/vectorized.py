@@ -168,7 +168,6 @@ def _warnings(
     contact = source.normal
     found = validity.findings(source)
     flags: dict[str, Any] = {each.code: each.where for each in found}
-    flags |= {notice.code: True for notice in contact.profile.notices}
     flags |= {each.code: each.where for each in contact.findings}
     flags["accuracy"] = source.error_estimates > ACCURACY
     flags |= {each.code: each.where for each in yields(query, source)}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import inf, isfinite
 from typing import TYPE_CHECKING, Any
 
+from mdr_core.elementwise import number
 from mdr_core.wear import limit
 from tests.core.batches import batched
 from tests.core.comparison import (
@@ -88,7 +89,7 @@ def test_results_and_error_estimates(cases: list[dict[str, Any]]) -> None:
 
 def field_failures(case: dict[str, Any]) -> Iterator[str]:
     real = case["profile"]["kind"] in EXPONENTS
-    doubt = INPUT + (profile_from(case["profile"]).rounding if real else 0.0)
+    doubt = INPUT + (profile_from(case["profile"]).rounding_at(number(0.0)) if real else 0.0)
     for fields in case["fields"]:
         result = solved(case, case["given"][fields["index"]])
         for name, row in fields["expected"].items():

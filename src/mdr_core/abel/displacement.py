@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import asinh, inf, pi, sqrt
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -94,16 +94,6 @@ def arcsine(x: Array, root: Array) -> Array:
     return np.arctan(x / root)
 
 
-class _Ends(NamedTuple):
-    """Ends of an interval: s at both and at r, and sqrt(r^2 - x^2) at both; shape (m,)."""
-
-    s_low: Array
-    s_high: Array
-    s_r: Array
-    root_low: Array
-    root_high: Array
-
-
 def slope_integral(
     branches: Sequence[Branch],
     low: Array,
@@ -144,13 +134,18 @@ def slope_integral(
                 from_base = (start == low[index]) & (start == branch.base)
                 s_r = np.where(from_base, own, s_r)
                 s_high = np.where(from_base & (end == far), own, s_high)
-            ends = _Ends(s_low, s_high, s_r, root_low, root_high)
+            ends = s_low, s_high, s_r, root_low, root_high
             total[:, index] += _branch(branch, ends, kernels, degree)
     return total
 
 
-def _branch(branch: Branch, ends: _Ends, kernels: Sequence[Kernel], degree: float) -> Array:
-    """Integrals in tan(alpha/2), s = s_r cos(alpha), above half of s_r, and in log(s) below it."""
+def _branch(
+    branch: Branch, ends: tuple[Array, ...], kernels: Sequence[Kernel], degree: float
+) -> Array:
+    """Integrals in tan(alpha/2), s = s_r cos(alpha), above half of s_r, and in log(s) below it.
+
+    The ends are s at both ends and at r, and sqrt(r^2 - x^2) at both ends.
+    """
     base, (s_low, s_high, s_r, root_low, root_high) = branch.base, ends
     split = np.minimum(np.maximum(s_r / 2, s_low), s_high)
     # Relative to r, where a narrow interval is accurate.

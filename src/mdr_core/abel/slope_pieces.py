@@ -136,42 +136,30 @@ class SlopePieces:
         return bool(self.rows[0, 0] == 0)
 
     @cached_property
-    def _slope(self) -> PPoly:
+    def slope(self) -> PPoly:
+        """g'(x) [1]."""
         return PPoly(self.rows[::-1], self.edges)
 
     @cached_property
-    def _depth(self) -> PPoly:
-        return self._slope.antiderivative()
+    def depth(self) -> PPoly:
+        """g(x) = int_0^x g' [length]."""
+        return self.slope.antiderivative()
 
     @cached_property
-    def _half_force(self) -> PPoly:
+    def half_force(self) -> PPoly:
+        """int_0^x t g'(t) dt [length^2]."""
         moment = np.pad(self.edges[:-1] * self.rows, ((0, 1), (0, 0)))
         moment[1:] += self.rows
         return PPoly(moment[::-1], self.edges).antiderivative()
 
     @cached_property
-    def _energy(self) -> PPoly:
-        half_force = self._half_force.c[::-1]
+    def energy(self) -> PPoly:
+        """int_0^x (g(x) - g)^2 dt = 2 int (half force) g' dt [length^3]."""
+        half_force = self.half_force.c[::-1]
         product = np.zeros((len(self.rows) + len(half_force) - 1, self.edges.size - 1))
         for power, row in enumerate(self.rows):
             product[power : power + len(half_force)] += 2 * row * half_force
         return PPoly(product[::-1], self.edges).antiderivative()
-
-    def slope(self, x: Array) -> Array:
-        """g'(x) [1]."""
-        return self._slope(x)[()]
-
-    def depth(self, x: Array) -> Array:
-        """g(x) = int_0^x g' [length]."""
-        return self._depth(x)[()]
-
-    def half_force(self, x: Array) -> Array:
-        """int_0^x t g'(t) dt [length^2]."""
-        return self._half_force(x)[()]
-
-    def energy(self, x: Array) -> Array:
-        """int_0^x (g(x) - g)^2 dt = 2 int (half force) g' dt [length^3]."""
-        return self._energy(x)[()]
 
     def stress(self, low: float, high: float, width: float, r: Array) -> Array:
         """Return int_max(r,low)^high g'(x)/sqrt(x^2 - r^2) dx at radii r < high.
@@ -189,7 +177,7 @@ class SlopePieces:
         halves = high / 2.0 ** np.arange(1, np.log2(high / nearest) + 1)
         pieces = _pieces(np.union1d(self.edges, halves), low, high, width)
         places = np.maximum(r, nearest) if low == 0 else r
-        total = integrals(lambda x: self._slope(x) - sharp, *pieces, places, lambda _, s: 1 / s, 1)
+        total = integrals(lambda x: self.slope(x) - sharp, *pieces, places, lambda _, s: 1 / s, 1)
         if sharp > 0:
             total += sharp * log_ratio(Annulus(*map(np.asarray, (high, width, low))), r)
         return total
@@ -204,7 +192,7 @@ class SlopePieces:
         kernel : K.
         """
         pieces = _pieces(self.edges, low, high, high - low)
-        return integrals(self._slope, *pieces, r, kernel, -1)
+        return integrals(self.slope, *pieces, r, kernel, -1)
 
     def annulus(self, low: float, width: float, kernels: Sequence[Kernel]) -> list[float]:
         """Return int_low^r g'(x) K(x, sqrt(r^2 - x^2)) dx, r = low + width, for each kernel K.
@@ -219,7 +207,7 @@ class SlopePieces:
         left, length = _pieces(self.edges, low, low + width, width)
         distance = np.maximum(width - (left - low) - length, 0.0)
         x, root, weight = near_rule(np.array([low + width]), distance, length, -1)
-        slope = weight * self._slope(x)
+        slope = weight * self.slope(x)
         return [float((slope * kernel(x, root)).sum()) for kernel in kernels]
 
 

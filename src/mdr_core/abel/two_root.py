@@ -76,19 +76,12 @@ def two_root_integral(
         break2, on_break = -beyond * beyond, beyond == 0
         outer2 = (upper - beyond) * (upper + beyond)
         root = inverse_hypot(lower, beyond)
-    infinite = None
     if some(on_break):
-        # Infinite where F ~ 1/s and the annulus begins at the break.
-        index = np.flatnonzero(on_break & (lower <= 0))
-        pole = weight(np.full((1, index.size), b), np.zeros((1, index.size)))[0] != 0
-        infinite = index[pole]
-        # Other points on the break take the rule of one just above it, by the rounding error of b^2
-        # and of the least s^2 of the annulus.
+        # Points on the break take the rule of one just above it, by the rounding error of b^2 and
+        # of the least s^2 of the annulus.
         above = 1e-8 * np.minimum(where(lower > 0, lower, upper), b)
         break2 = np.where(on_break, -above * above, break2)
         root = np.where(on_break, lower, root)
-        # Integrals that are not used are short.
-        break2[infinite] = -b * b
 
     epsilon, shift = np.sqrt(np.abs(break2)), np.maximum(-break2, 0.0)
     # sinh y is the smaller root over epsilon at either end, and cosh y the larger one.
@@ -107,6 +100,8 @@ def two_root_integral(
         return weight(np.sqrt(x, out=x), np.sqrt(s, out=s))
 
     result = integrate(h, length, start, growth=growth)
-    if infinite is not None:
-        result[infinite] = np.inf
+    # Infinite where F ~ 1/s and the annulus begins at the break.
+    pole = on_break & (lower <= 0)
+    if some(pole) and weight(np.array([b]), np.zeros(1)) != 0:
+        result[pole] = np.inf
     return result

@@ -111,4 +111,4 @@ def _coordinate(profile: Profile, layer: Layer, name: str, load: Array) -> Array
         return value.reshape(shape)[()], (np.ravel(s) * slope / value).reshape(shape)[()]
 
     start = np.minimum(where(start > 0, start, end), end)
-    return invert(sloped, load, start, full(0.0, start), full(end, start), "layer")
+    return invert(sloped, load, start, full(0.0, start), full(end, start))

@@ -4,7 +4,7 @@ The interface is one class, and therefore one long file.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from math import inf
 from typing import Any, ClassVar, Final, Self
@@ -23,8 +23,7 @@ from mdr_core.abel.displacement import (
 from mdr_core.abel.stress import stress_integral
 from mdr_core.doubles import EPS, LOG_RANGE
 from mdr_core.elementwise import full, number, some, where
-from mdr_core.errors import Notice
-from mdr_core.inversion import Function, invert
+from mdr_core.inversion import invert
 from mdr_core.profiles.power_functions import StickRatios
 from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.typing import Array, Flags, Indices, Parameter
@@ -44,8 +43,7 @@ NORMAL_QUANTITIES: Final = (
 FIELDS: Final = ("pressure", "shear_stress", "slip", "normal_displacement")
 # Attributes that completion offers, in addition to the parameters and the attributes of a table.
 _SHAPE: Final = ("f", "df", "g", "dg", "r", "breaks", "domain", "infinite_pressure_radii")
-_FOR_USERS: Final = ("kind", "formula", "closed_forms", "notices", *_SHAPE)
-_NO_BREAKS: Final = np.empty(0)
+_FOR_USERS: Final = ("kind", "formula", "closed_forms", *_SHAPE)
 
 
 class Profile(ABC):
@@ -66,8 +64,6 @@ class Profile(ABC):
     closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
     # Closed forms of the stick edge in contact coordinates, by u_x/u_max and by F_x/(mu F_N).
     stick_ratios: ClassVar[StickRatios | None] = None
-    # Bound on the relative rounding error of the closed forms.
-    rounding: Parameter = 3e-14
 
     def __post_init__(self) -> None:
         """Raise InputError unless all parameters are positive and finite."""
@@ -103,11 +99,6 @@ class Profile(ABC):
         return part
 
     @property
-    def notices(self) -> tuple[Notice, ...]:
-        """Warnings about the profile itself."""
-        return ()
-
-    @property
     def normal_method(self) -> str:
         """Most expensive method among the quantities of a normal contact."""
         closed = set(NORMAL_QUANTITIES) <= set(self.closed_forms)
@@ -121,7 +112,7 @@ class Profile(ABC):
 
     def rounding_at(self, coordinate: Array) -> Parameter:
         """Bound on the relative rounding error of the closed forms at a contact coordinate."""
-        return self.rounding
+        return 3e-14
 
     # The shape.
 
@@ -238,7 +229,7 @@ class Profile(ABC):
     @property
     def coordinate_breaks(self) -> Array:
         """Contact coordinates at which the depth is not smooth, ascending; in a sweep by case."""
-        return _NO_BREAKS
+        return np.empty(0)
 
     def coordinate_from_radius(self, contact_radius: Array) -> Array:
         """Contact coordinate of a contact radius."""
@@ -277,13 +268,22 @@ class Profile(ABC):
         """Derivative of F_N/E* with respect to the contact coordinate s, 2 a d'(s)."""
         return 2 * self.contact_radius(coordinate) * self.depth_slope(coordinate)
 
+    def load_and_slope(self, coordinate: Array, *, of_force: bool) -> tuple[Array, Array]:
+        """F_N/E* [length^2], or the depth [length], and its derivative.
+
+        Source: notes, §1.
+        """
+        if of_force:
+            return self.reduced_force(coordinate), self.force_slope(coordinate)
+        return self.depth(coordinate), self.depth_slope(coordinate)
+
     def reduced_energy(self, coordinate: Array) -> Array:
         """Elastic energy over E*, int_0^a (d - g)^2 dx = int_0^d F_N/E* dd [length^3]."""
         depth = self.depth(coordinate)
+        return self._integral(lambda s: np.square(depth - self.depth(s)), coordinate)
 
-        def density(s: Array) -> Array:
-            return np.square(depth - self.depth(s))
-
+    def _integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
+        """Integral of a density over the contact coordinate, from the axis to the edge."""
         return power_law_integral(density, coordinate, self.scale)
 
     def coordinate_from_load(self, load: Array, *, of_force: bool) -> Array:
@@ -299,38 +299,35 @@ class Profile(ABC):
 
     def coordinate_from_depth(self, depth: Array) -> Array:
         """Inverse of `depth`, iterated where it has no closed form."""
-        if self.largest_loads is not None:
-            beyond = depth > self.largest_loads[0]
-            require_inside(("load", "indentation_depth"), beyond, self)
-        return self._root(self.depth, self.depth_slope, depth)
+        return self._root(depth, of_force=False)
 
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
         """Inverse of `reduced_force`, iterated where it has no closed form."""
-        if self.largest_loads is not None:
-            beyond = reduced_force > self.largest_loads[1]
-            require_inside(("load", "normal_force"), beyond, self)
-        return self._root(self.reduced_force, self.force_slope, reduced_force)
+        return self._root(reduced_force, of_force=True)
 
-    def _root(self, load: Function, slope: Function, target: Array) -> Array:
+    def _root(self, target: Array, *, of_force: bool) -> Array:
         """Contact coordinate at which a load has a value within the domain."""
+        if self.largest_loads is not None:
+            name = "normal_force" if of_force else "indentation_depth"
+            require_inside(("load", name), target > self.largest_loads[of_force], self)
+
         # At a pole the load is infinite, and no power is known.
         scale = number(1.0) * np.minimum(self.scale, self.pole / 2)
         with np.errstate(all="ignore"):
             # The first approximation takes the load as a power of the coordinate, fitted at the
             # scale.
-            at_scale = load(scale)
-            ratio = np.log(target / at_scale) * (at_scale / (scale * slope(scale)))
+            load, slope = self.load_and_slope(scale, of_force=of_force)
+            ratio = np.log(target / load) * (load / (scale * slope))
             # Where a load hardly rises at the scale, this power leaves the range of doubles.
             start = scale * np.exp(np.clip(ratio, -LOG_RANGE, LOG_RANGE))
-            start = where(start > 0, start, scale)
-        low, high = (full(end, start) for end in (0.0, self.domain))
+        start = np.minimum(where(start > 0, start, scale), self.domain)
 
         def sloped(s: Array) -> tuple[Array, Array]:
-            value = load(s)
-            return value, s * slope(s) / value
+            value, slope = self.load_and_slope(s, of_force=of_force)
+            return value, s * slope / value
 
-        start = where(high < start, high, start)
-        return invert(sloped, target, start, low, high, self.kind)
+        low, high = (full(end, start) for end in (0.0, self.domain))
+        return invert(sloped, target, start, low, high)
 
     # Methods over the slip annulus.
 
@@ -435,8 +432,7 @@ class Profile(ABC):
 
     def force_within(self, x: Array) -> Array:
         """2 int_0^x x g'(x) dx, zero on a flat [length^2]."""
-        flat = self.contact_radius(np.zeros_like(x))
-        return self.reduced_force(self.coordinate_from_radius(np.maximum(x, flat)))
+        return self.reduced_force(self.coordinate_from_radius(np.maximum(x, self.first_radius)))
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         """True where the pressure is known to fall from the axis to the contact edge.
@@ -448,11 +444,8 @@ class Profile(ABC):
 
     def axis_stress(self, coordinate: Array) -> Array:
         """Stress integral at the axis of each contact, (1/pi) int_0^a g'(x)/x dx [1]."""
-
-        def density(s: Array) -> Array:
-            return self.depth_slope(s) / self.contact_radius(s)
-
-        return power_law_integral(density, coordinate, self.scale) / np.pi
+        stress = self._integral(lambda s: self.depth_slope(s) / self.contact_radius(s), coordinate)
+        return stress / np.pi
 
     def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
         """Stress integral (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx [1].

@@ -3,13 +3,12 @@
 Source: notes, §4.
 """
 
-from collections.abc import Sequence
 from math import factorial
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from mdr_core.elementwise import is_number, piecewise
+from mdr_core.elementwise import piecewise
 from mdr_core.typing import Array, Parameter
 
 # Below this argument a power series replaces the difference, which would lose more than four bits.
@@ -20,21 +19,13 @@ _ATAN: Final = [(-1) ** k / (2 * k + 3) for k in range(19, -1, -1)]
 _TANH: Final = [2 * k / factorial(2 * k + 1) for k in range(7, 0, -1)]
 
 
-def _series(coefficients: Sequence[float], u: Any) -> Any:
-    # Python floats give bit-identical results in a third of the time.
-    u, value = u.item() if is_number(u) else u, 0.0
-    for coefficient in coefficients:
-        value = value * u + coefficient
-    return value
-
-
 def atan_gap(s: Array, b: Parameter) -> Array:
     """Return s - b arctan(s/b) for s >= 0, b > 0 [length]: s^3/(3 b^2) for small s."""
     z = s / b
     return piecewise(
         z,
         _THRESHOLD,
-        lambda z: s * (z * z) * _series(_ATAN, z * z),
+        lambda z: s * (z * z) * np.polyval(_ATAN, z * z),
         lambda _: s - b * np.arctan(z),
     )
 
@@ -44,6 +35,6 @@ def tanh_gap(v: Array) -> Array:
     return piecewise(
         v,
         _THRESHOLD,
-        lambda v: v * (v * v) * _series(_TANH, v * v) / np.cosh(v),
+        lambda v: v * (v * v) * np.polyval(_TANH, v * v) / np.cosh(v),
         lambda v: v - np.tanh(v),
     )

@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Callable
-from math import pi, radians, tan
+from math import radians, tan
 
 import numpy as np
 
@@ -57,10 +57,6 @@ class Flanked(Profile):
     def _flank_energy(self, past: Array) -> Array:
         """int F_N/E* dg from b to b + past [length^3]."""
         return self._over_flank(self._flank_force, past)
-
-    def _flank_stress(self, past: Array) -> Array:
-        """(1/pi) int dg/x from b to b + past [1]."""
-        return self._over_flank(lambda x, _: 1 / x, past) / pi
 
     def _over_flank(self, factor: Callable[[Array, Array], Array], past: Array) -> Array:
         b = self.flank_start

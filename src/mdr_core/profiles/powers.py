@@ -15,7 +15,6 @@ from mdr_core.profiles.power_functions import (
     StickRatios,
     cubic_stick,
     kappa,
-    linear_stick,
     power,
     power_root,
     power_slope,
@@ -30,6 +29,11 @@ class PowerLaw(Profile):
 
     coefficient: Parameter
     exponent: Parameter
+
+    @property
+    def stick_ratios(self) -> StickRatios:  # type: ignore[override]  # a constant of other kinds
+        """Source: mdr-5, Eqs. (5.29), (5.31)."""
+        return partial(power_stick, self.exponent), partial(power_stick, self.exponent + 1)
 
     def f(self, radius: Array) -> Array:
         with np.errstate(over="ignore", under="ignore"):
@@ -91,8 +95,6 @@ class Cone(PowerLaw):
     exponent: ClassVar[float] = 1.0  # type: ignore[misc]  # a field of other powers
     formula: ClassVar[str] = "slope·r"
     closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, *FIELDS)
-    # Source: mdr-5, Eqs. (5.47), (5.49).
-    stick_ratios: ClassVar[StickRatios] = (linear_stick, square_stick)
 
     @property
     def coefficient(self) -> Parameter:  # type: ignore[override]  # a field of other powers
@@ -271,16 +273,10 @@ class Power(PowerLaw):
         name for name in NORMAL_QUANTITIES if name != "maximum_pressure"
     )
 
-    @property
-    def rounding(self) -> Parameter:  # type: ignore[override]  # a constant of most kinds
+    def rounding_at(self, coordinate: Array) -> Parameter:
         # r^n has n times the relative rounding error of the scaled radius.
         return 2e-14 + 8e-15 * self.exponent
 
     @property
     def exponents(self) -> tuple[float, ...]:
         return float(np.min(self.exponent)), float(np.max(self.exponent))
-
-    @property
-    def stick_ratios(self) -> StickRatios:  # type: ignore[override]  # a constant of other kinds
-        """Source: mdr-5, Eqs. (5.29), (5.31)."""
-        return partial(power_stick, self.exponent), partial(power_stick, self.exponent + 1)

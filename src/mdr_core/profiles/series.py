@@ -13,7 +13,7 @@ from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.power_functions import kappa, power, power_slope
-from mdr_core.profiles.power_sums import first_negative_radius, log_terms
+from mdr_core.profiles.power_sums import first_negative_radius
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import single
 
@@ -95,24 +95,22 @@ class Series(Profile):
     @cached_property
     def domain(self) -> float:
         # f' and g' are multiplied by the radius.
-        slope_f = log_terms(self._powers, lambda n: n)
-        slope_g = log_terms(self._powers, lambda n: n * float(kappa(n)))
-        return min(first_negative_radius(slope_f), first_negative_radius(slope_g))
-
-    @property
-    def rounding(self) -> float:  # type: ignore[override]  # a constant of most kinds
-        return 4e-14 + 8e-15 * max(self.exponents)
+        c, n = np.array(self._powers).T
+        size = np.log(np.abs(c)) + np.log(n)
+        slopes = (np.array([np.sign(c), each, n]) for each in (size, size + np.log(kappa(n))))
+        return min(map(first_negative_radius, slopes))
 
     def rounding_at(self, coordinate: Array) -> Parameter:
         """The bound includes cancellation between positive and negative terms. See `Profile`."""
+        rounding = 4e-14 + 8e-15 * max(self.exponents)
         if self._positive:
-            return self.rounding
+            return rounding
         terms = np.array(
             [(depth, 2 * n / (n + 1) * depth) for depth, n in self._depths(coordinate)]
         )
         with np.errstate(all="ignore"):
             lost = (np.abs(terms).sum(axis=0) / np.abs(terms.sum(axis=0))).max(axis=0)
-        return self.rounding + 8 * EPS * where(coordinate > 0, lost, 0.0)
+        return rounding + 8 * EPS * where(coordinate > 0, lost, 0.0)
 
     @property
     def scale(self) -> Parameter:

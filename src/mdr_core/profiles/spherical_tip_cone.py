@@ -40,8 +40,7 @@ class SphericalTipCone(TippedCone):
         "sphere of tip_radius for r ≤ b = tip_radius·slope/√(1 + slope²), then its tangent cone"
     )
 
-    @property
-    def rounding(self) -> Parameter:  # type: ignore[override]  # a constant of most kinds
+    def rounding_at(self, coordinate: Array) -> Parameter:
         # R - b is about R/(2 t^2).
         return 3e-14 + EPS * self.slope * self.slope
 

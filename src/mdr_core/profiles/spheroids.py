@@ -10,7 +10,6 @@ import numpy as np
 from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch
 from mdr_core.doubles import EPS, TINY
-from mdr_core.elementwise import some
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.cancellation_free import tanh_gap
 from mdr_core.profiles.power_law_integral import power_law_integral
@@ -60,7 +59,7 @@ class Spheroid(Profile):
 
     def rounding_at(self, coordinate: Array) -> Parameter:
         """Next to the equator the rounding error of R - a dominates. See `Profile`."""
-        return self.rounding + EPS / 2 * self.radius / (self.radius - coordinate)
+        return super().rounding_at(coordinate) + EPS / 2 * self.radius / (self.radius - coordinate)
 
     def f(self, radius: Array) -> Array:
         root = np.sqrt((self.radius - radius) * (self.radius + radius))
@@ -95,8 +94,8 @@ class Spheroid(Profile):
         Source: notes, §2. Parameters: see `Profile`.
         """
         a, width, c, *_ = annulus
-        r, big = radius, self.radius
-        square, rest_a = ((big - x) * (big + x) for x in (r, a))
+        r, big, low = radius, self.radius, np.maximum(c, radius)
+        square, rest_a, rest_low = ((big - x) * (big + x) for x in (r, a, low))
         stretch, tilt2 = big / np.sqrt(square), r * r / square
 
         def h(y: Array, index: Indices) -> Array:
@@ -109,27 +108,16 @@ class Spheroid(Profile):
             return np.log1p(2 * (z2 + q)) / (2 * q)
 
         top = inverse_hypot(a, r) / np.sqrt(rest_a)
-        length, start = np.arcsinh(top), np.zeros(r.shape)
-        if some(c > 0):
-            low = np.maximum(c, r)
-            rest_c = (big - low) * (big + low)
-            bottom = inverse_hypot(low, r) / np.sqrt(rest_c)
-            # arcsinh(top) - arcsinh(bottom), free of cancellation.
-            covered = np.where(c > r, width * (a + c), (a - r) * (a + r)) / rest_a / rest_c
-            sums = np.maximum(top / np.sqrt(rest_c) + bottom / np.sqrt(rest_a), TINY)
-            start, length = np.arcsinh(bottom), np.arcsinh(covered * np.sqrt(square) / sums)
+        bottom = inverse_hypot(low, r) / np.sqrt(rest_low)
+        # arcsinh(top) - arcsinh(bottom), free of cancellation.
+        covered = np.where(c > r, width * (a + c), (a - r) * (a + r)) / rest_a / rest_low
+        sums = np.maximum(top / np.sqrt(rest_low) + bottom / np.sqrt(rest_a), TINY)
+        start, length = np.arcsinh(bottom), np.arcsinh(covered * np.sqrt(square) / sums)
         smooth = integrate(h, length, start)
         return self.height / (pi * big) * stretch * (length + smooth)
 
-    def reduced_energy(self, coordinate: Array) -> Array:
-        depth = self.depth(coordinate)
-        return self._integral(lambda x: np.square(depth - self.g(x)), coordinate)
-
-    def axis_stress(self, coordinate: Array) -> Array:
-        return self._integral(lambda x: self.dg(x) / x, coordinate) / pi
-
     def _integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
-        """int_0^a density(x) dx over v = artanh(x/R), which resolves the pole at the equator."""
+        """Over v = artanh(x/R), which resolves the pole at the equator. See `Profile`."""
 
         def over_v(v: Array) -> Array:
             return density(self.radius * np.tanh(v)) * (self.radius / np.square(np.cosh(v)))

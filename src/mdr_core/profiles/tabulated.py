@@ -7,7 +7,7 @@ from typing import ClassVar, Final, Self
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
-from scipy.interpolate import BPoly, PPoly, make_interp_spline
+from scipy.interpolate import make_interp_spline
 
 from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch, Kernel, arccosine, arccosine_growth, arcsine
@@ -29,6 +29,8 @@ _ROUNDING: Final = 2e-13
 _MET: Final = 1.1
 # Nodes and weights of a mean over the angles, in which g(r sin t) is smooth.
 _ANGLES, _SHARES = composite_rule(16, 8)
+# Points of a piece at which the increase of g'(x)/x is sampled.
+_SAMPLES: Final = 16
 # Points of a tip from the coefficients of its area function.
 _POINTS_OF_AREA: Final = 200
 
@@ -93,7 +95,6 @@ class Tabulated(Profile):
         self.meets_points = uncertainty is not None and self.fit.rms <= _MET * uncertainty
         """True if the profile deviates from the points by no more than their uncertainty."""
         self._spline = SlopePieces(self.fit.edges, self.fit.rows)
-        self.rounding = _ROUNDING
 
     @classmethod
     def from_area_function(
@@ -171,6 +172,9 @@ class Tabulated(Profile):
     def normal_method(self) -> str:
         return "piecewise_moments"
 
+    def rounding_at(self, coordinate: Array) -> Parameter:
+        return _ROUNDING
+
     @property
     def flattens(self) -> bool:
         return not self._flanks
@@ -221,19 +225,21 @@ class Tabulated(Profile):
         if some(radius > self._end):
             raise InputError(("profile", "r"), f"the table ends at radius {self._end:.12g}")
 
+    def _with_flanks(self, of_spline: Array, value: Callable[[Truncated], Array]) -> Array:
+        """Value of the spline plus the values of the flanks."""
+        return of_spline + sum(factor * value(shape) for factor, shape in self._flanks)
+
     # The shape.
 
     def f(self, radius: Array) -> Array:
-        return self._under_radius(radius, arccosine) + sum(
-            factor * shape.f(radius) for factor, shape in self._flanks
-        )
+        height = self._under_radius(radius, arccosine)
+        return self._with_flanks(height, lambda shape: shape.f(radius))
 
     def df(self, radius: Array) -> Array:
         slope = self._under_radius(radius, arccosine_growth)
         tip = 2 / np.pi * self.fit.rows[0, 0]
-        return np.where(radius > 0, slope, tip)[()] + sum(
-            factor * shape.df(radius) for factor, shape in self._flanks
-        )
+        slope = np.where(radius > 0, slope, tip)[()]
+        return self._with_flanks(slope, lambda shape: shape.df(radius))
 
     def _under_radius(self, radius: Array, kernel: Kernel) -> Array:
         """(2/pi) int_0^r g' K dx of the spline."""
@@ -243,16 +249,15 @@ class Tabulated(Profile):
 
     def g(self, x: Array) -> Array:
         self._require_inside(x)
-        return self._spline.depth(x) + sum(factor * shape.g(x) for factor, shape in self._flanks)
+        return self._with_flanks(self._spline.depth(x), lambda shape: shape.g(x))
 
     def dg(self, x: Array) -> Array:
         self._require_inside(x)
-        slope = self._spline.slope(x)
-        return slope + sum(factor * shape.dg(x) for factor, shape in self._flanks)
+        return self._with_flanks(self._spline.slope(x), lambda shape: shape.dg(x))
 
     def depth_slope_beyond(self, coordinate: Array, start: Array, past: Array) -> Array:
         """Parameters: see `Profile`."""
-        slope = self._spline.slope(coordinate)
+        slope = self._spline.slope(coordinate)[()]
         for factor, shape in self._flanks:
             b = shape.flat_radius
             above = where(start == b, past, np.maximum(coordinate - b, 0.0))
@@ -263,17 +268,15 @@ class Tabulated(Profile):
 
     def reduced_force(self, coordinate: Array) -> Array:
         spline = 2 * self._spline.half_force(coordinate)
-        return spline + sum(
-            factor * shape.force_within(coordinate) for factor, shape in self._flanks
-        )
+        return self._with_flanks(spline, lambda shape: shape.force_within(coordinate))
 
     def reduced_energy(self, coordinate: Array) -> Array:
         """Closed for a spline; with flanks int_0^a F_N(x)/E* g'(x) dx."""
         if not self._flanks:
-            return self._spline.energy(coordinate)
-        return self._integral(self.reduced_force, coordinate)
+            return self._spline.energy(coordinate)[()]
+        return self._slope_integral(self.reduced_force, coordinate)
 
-    def _integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
+    def _slope_integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
         """int_0^a density(x) g'(x) dx, by Gauss's rule on each piece."""
         # Halves of the last radius, so that 1/x is smooth on a piece.
         a, halves = np.ravel(coordinate), self._end / 2.0 ** np.arange(1, -np.log2(EPS))
@@ -328,21 +331,17 @@ class Tabulated(Profile):
         def under(low: float, at: Array) -> Array:
             return 2 / np.pi * self._spline.under(low, self._end, at, arccosine)
 
-        value = _of_each(under, (c,), r)
-        for factor, shape in self._flanks:
-            past = r > shape.flat_radius
-            inner = np.maximum(c[past], shape.flat_radius)
-            value[past] += factor * shape.slip_integral(inner, r[past])
-        return value
+        spline = _of_each(under, (c,), r)
+        return self._with_flanks(spline, lambda shape: shape.slip_integral(c, r))
 
     def outer_displacement(self, a: Array, r: Array, coordinate: float) -> Array:
         """By Gauss's rule on the pieces. Parameters: see `Profile`."""
-        value = 2 / np.pi * self._spline.under(0.0, float(a[0]), r, arcsine)
-        for factor, shape in self._flanks:
-            if a[0] > shape.flat_radius:
-                beyond = float(a[0] - shape.flat_radius)
-                value += factor * shape.outer_displacement(a, r, beyond)
-        return value
+        spline = 2 / np.pi * self._spline.under(0.0, float(a[0]), r, arcsine)
+
+        def of_flank(shape: Truncated) -> Array:
+            return shape.outer_displacement(a, r, coordinate - float(shape.flat_radius))
+
+        return self._with_flanks(spline, of_flank)
 
     def annulus_integrals(
         self, low: Array, width: Array, *kernels: Kernel, degree: float = 0.0
@@ -357,51 +356,41 @@ class Tabulated(Profile):
         return np.array(found).T.reshape(len(kernels), low.size)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
-        """By an upper bound of the increase of h = g'(x)/x on the pieces. See `Profile`."""
-        first = min(self._breaks, default=np.inf)
-        if not self._spline.smooth_tip:
-            return coordinate < 0
-        piece = self.fit.edges[1:-1].searchsorted(coordinate, side="right")
-        height = self._spline.slope(coordinate) / np.where(coordinate > 0, coordinate, 1.0)
-        next_to_axis, beyond = self._increase
-        # Where h' > 0 on the axis, the pressure rises by no more than this rounding error.
-        next_to_axis *= -np.log(_ROUNDING) / 2
-        rise = next_to_axis * coordinate + beyond[piece] * np.square(coordinate)
-        return (coordinate < first) & (height > 0) & (rise <= height)
+        return coordinate < self._falls_up_to
 
     @cached_property
-    def _increase(self) -> tuple[float, Array]:
-        """Bounds on h' on the first piece, and on h'/x beyond it up to each piece, >= 0.
+    def _falls_up_to(self) -> float:
+        """Radius up to which the pressure falls from the axis [length]. See `falls_from_axis`.
 
-        A polynomial is at most another of which no coefficient in Bernstein's form is less.
+        The increase of h = g'(x)/x is sampled on the pieces.
         """
-        # Few points leave a parabola, which has no cube.
-        edges, rows = self.fit.edges, np.pad(self.fit.rows, ((0, 1), (0, 0)))
-        power, low = np.arange(len(rows))[:, None], edges[:-1]
-
-        def bernstein(polynomial: Array) -> Array:
-            return np.asarray(BPoly.from_power_basis(PPoly(polynomial[::-1], edges)).c)
-
-        # x^2 h' = x g'' - g', against x^3.
-        rise = (power - 1) * rows
-        first = float(bernstein(rise[2:])[:, 0].max())
-        rise[:-1] += low * (power * rows)[1:]
-        cube = np.zeros_like(rows)
-        cube[:4] = low**3, 3 * low**2, 3 * low, np.ones_like(low)
-        beyond = (bernstein(rise)[:, 1:] / bernstein(cube)[:, 1:]).max(axis=0)
-        return max(first, 0.0), np.maximum.accumulate(np.append(0.0, beyond))
+        if not self._spline.smooth_tip:
+            return 0.0
+        edges, rows, share = self.fit.edges, self.fit.rows, np.linspace(0.0, 1.0, _SAMPLES)
+        # On the first piece h' = sum (k - 1) c_k x^(k - 2).
+        tip = polyval(edges[1] * share, rows[2:, 0] * np.arange(1.0, len(rows) - 1)).max()
+        x = edges[:-1, None] + np.diff(edges)[:, None] * share[1:]
+        x, slope = x.ravel(), self._spline.slope(x.ravel())
+        beyond = np.where(x > edges[1], (x * self._spline.slope(x, 1) - slope) / x**3, 0.0)
+        # Where h' > 0 on the axis, the pressure rises by no more than this rounding error.
+        rise = -np.log(_ROUNDING) / 2 * max(tip, 0.0) * x
+        rise += np.maximum.accumulate(np.maximum(beyond, 0.0)) * np.square(x)
+        ends = (slope <= 0) | (rise > slope / x) | (x >= min(self._breaks, default=np.inf))
+        return float(x[ends].min(initial=np.inf))
 
     def axis_stress(self, coordinate: Array) -> Array:
-        stress = self._integral(np.reciprocal, coordinate) / np.pi
+        stress = self._slope_integral(np.reciprocal, coordinate) / np.pi
         return stress if self._spline.smooth_tip else stress + np.inf
 
     def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
         """Source: notes, §5. Parameters: see `Profile`."""
         a, width, c, *_ = annulus
-        total = _of_each(self._spline.stress, (c, a, width), radius)
-        for factor, shape in self._flanks:
-            total += factor * stress_integral(shape.branches, annulus, radius)
-        return total / np.pi
+        spline = _of_each(self._spline.stress, (c, a, width), radius)
+
+        def of_flank(shape: Truncated) -> Array:
+            return stress_integral(shape.branches, annulus, radius)
+
+        return self._with_flanks(spline, of_flank) / np.pi
 
 
 def tip_points(

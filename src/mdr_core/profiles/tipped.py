@@ -77,7 +77,8 @@ class Tipped(Flanked):
     def axis_stress(self, coordinate: Array) -> Array:
         b = self.flank_start
         inner = self._tip.axis_stress(np.minimum(coordinate, b))
-        return inner + self._flank_stress(np.maximum(coordinate - b, 0.0))
+        past = np.maximum(coordinate - b, 0.0)
+        return inner + self._over_flank(lambda x, _: 1 / x, past) / np.pi
 
 
 class TippedCone(Tipped):

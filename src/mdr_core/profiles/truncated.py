@@ -70,9 +70,6 @@ class Truncated(Flanked):
     def reduced_energy(self, coordinate: Array) -> Array:
         return self._flank_energy(coordinate)
 
-    def axis_stress(self, coordinate: Array) -> Array:
-        return self._flank_stress(coordinate)
-
     def pressure_kernel(
         self, annulus: Annulus, radius: Array, beyond: Array | None = None
     ) -> Array:

@@ -212,7 +212,7 @@ class VirginCurves:
 
         start = np.where(within, length * need / np.where(within, most, 1.0), 1.0)
         need = np.where(within, need, 0.0)
-        along = invert(sloped, need, start, 0 * length, length, "virgin curve of torsion")
+        along = invert(sloped, need, start, 0 * length, length)
         state = self._state(np.where(load >= tops[1:][at], length, along), at)
         # Below the step of P at the edge a flat punch sticks completely.
         onset = tops[0, contact]

@@ -91,14 +91,7 @@ def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> L
 
     # The stick edge before wear lies further in: there the annulus outside carries load as well.
     widest = where(target > 0, contact.width, 1.0)
-    width = invert(
-        step_by_force,
-        target,
-        widest / 2,
-        full(0.0, target),
-        widest,
-        f"{profile.kind}'s stick edge under a constant force",
-    )
+    width = invert(step_by_force, target, widest / 2, full(0.0, target), widest)
     found, error = _beneath(profile, top, width), full(ROUNDING, width)
     return _from(contact, step, unbounded=unbounded, moved=found, width_error=error)
 
@@ -136,7 +129,6 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
         where(target > 0, (low + high) / 2, 1.0),
         low,
         where(target > 0, high, 2.0),
-        f"{profile.kind}'s stick edge at a constant depth",
     )
     found = _beneath(profile, top, width)
     step = _step_of_force(contact, amplitude, found[1])

@@ -69,10 +69,9 @@ def width_where_worn(profile: Profile, stick: Array, step: Array, start: Array) 
         theta, edge = angle(stick, width), (stick + width) * _root(stick, width)
         return total / theta, width * (growth / total - stick / edge / theta)
 
-    name = f"{profile.kind}'s worn annulus"
     room = largest_width(profile, stick)
     start = np.minimum(start, room / 2)
-    found = invert(mean_rise, step, start, np.zeros_like(step), room, name)
+    found = invert(mean_rise, step, start, np.zeros_like(step), room)
     if np.all(found < room / 2):
         return found
     # One rise at the end of the profile can take longer than the whole search.
