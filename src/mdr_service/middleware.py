@@ -191,13 +191,13 @@ def problem_response(error: ServiceError, headers: Mapping[str, str] | None = No
     return Response(orjson.dumps(document), error.type.status, headers, problems.MEDIA_TYPE)
 
 
-def header(scope: Scope, name: bytes, default: str = "") -> str:
+def header(scope: Scope, name: bytes) -> str:
     """Return the header of a lower-case name, several lines as one list (RFC 9110, 5.3).
 
     The framework's mapping of all headers takes longer to build than this search.
     """
     lines = [value for each, value in scope["headers"] if each == name]
-    return b", ".join(lines).decode("latin-1") if lines else default
+    return b", ".join(lines).decode("latin-1")
 
 
 async def read_body(request: Request, *, any_type: bool = False) -> bytes:

@@ -17,8 +17,8 @@ from mdr_service.dispatch import is_short, respond
 from mdr_service.middleware import header, hold, read_body
 from mdr_service.query_parameters import Parameters
 from mdr_service.schemas import contacts
-from mdr_service.serializers import FORMATS, JSON, PICTURES
-from mdr_service.serializers.picture import AS_USUAL, Appearance
+from mdr_service.serializers import FORMATS, PICTURES
+from mdr_service.serializers.picture import Appearance
 
 MAX_PARSED_ON_LOOP: Final = 16_384
 """Longest query that is parsed on the event loop [bytes]; the slowest one is rejected in 2 ms."""
@@ -28,10 +28,7 @@ _CACHED: Final = {"Cache-Control": "max-age=3600", "Vary": "Accept"}
 
 def _form_of(request: Request, name: str, given: ResponseParameters) -> tuple[str, Appearance]:
     """Return media type and appearance of the response, from parameters or from ``Accept``."""
-    accept = header(request.scope, b"accept", "*/*")
-    if given.format is given.size is given.units is None and accept == "*/*":
-        # Most clients send this header, or none.
-        return JSON, AS_USUAL
+    accept = header(request.scope, b"accept")
     # A batch is JSON only.
     found = media_type(given.format, accept, ["json"] if name == "batch" else list(FORMATS))
     return found, appearance(found, given.size, given.units)
