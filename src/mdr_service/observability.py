@@ -58,9 +58,6 @@ class LogStream:
         except OSError:
             LOST_LINES.inc()
 
-    def flush(self) -> None:
-        """Do nothing, because every line is written at once."""
-
 
 LOG: Final = LogStream()
 
