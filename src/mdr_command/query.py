@@ -24,7 +24,7 @@ from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
-from mdr_service.query_parameters import PARAMETERS, parameters_of
+from mdr_service.query_parameters import NUMBERS, PARAMETERS, parameters_of
 from mdr_service.schemas.fits import FitQuery
 from mdr_service.schemas.profiles import OF_NUMBERS
 from mdr_service.sentences import NOT_NUMBERS
@@ -46,11 +46,6 @@ _STATUS: Final = {
 _STANDARD_INPUT: Final = "-"
 # A fit takes options beside the file of its curve, which a URL does not hold.
 _PARAMETERS: Final = PARAMETERS | {"fit": parameters_of(FitQuery)}
-# Options that are not numbers.
-_TEXTS: Final = frozenset(
-    {"kind", "scale", "answers", "quantities", "held_1", "held_2", "fit", "segment", "drift"}
-    | {"layer_base"}
-)
 # Heights between which an area function describes a tip.
 _HEIGHTS: Final = ("largest_height", "lowest_height")
 # Options of files in place of parameters, with the name of their value and their help.
@@ -114,6 +109,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="file for the response (default: standard output)",
     )
+    parser.set_defaults(**dict.fromkeys(_OF_FILES))
     if fields := _options(parser.get_default("command")):
         group = parser.add_argument_group("request by options, in place of a file")
         for name, option in _OF_FILES.items():
@@ -126,7 +122,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
                 _flag(name),
                 action="append",
                 default=argparse.SUPPRESS,
-                metavar="TEXT" if name in _TEXTS else "NUMBER",
+                metavar="NUMBER" if field.annotation in NUMBERS else "TEXT",
                 help=(field.description or "").replace("%", "%%"),
             )
     parser.description = (
@@ -201,9 +197,7 @@ def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
 
     The query parameters then need a placeholder for the kind of profile.
     """
-    file, area, unit = (
-        vars(arguments).get(name) for name in ("table", "area_coefficients", "length_unit")
-    )
+    file, area, unit = arguments.table, arguments.area_coefficients, arguments.length_unit
     if not (file or area):
         if unit:
             raise InputError(("length_unit",), "is valid only with --table or --area-coefficients")
@@ -218,7 +212,7 @@ def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
             arguments, read_table(file, unit.split(",") if unit and "," in unit else unit)
         )
     else:
-        r, f = _tip(str(area), [vars(arguments)[name] for name in _HEIGHTS], unit or "m")
+        r, f = _tip(area, [vars(arguments)[name] for name in _HEIGHTS], unit or "m")
     return {"profile": {"kind": "tabulated", "r": r.tolist(), "f": f.tolist()}}
 
 
@@ -284,8 +278,7 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
     by_options = any(name in arguments for name in names)
     by_curve = by_options and arguments.command == "fit"
     file = arguments.file or _STANDARD_INPUT
-    table = vars(arguments).get("table")
-    area = vars(arguments).get("area_coefficients")
+    table, area = arguments.table, arguments.area_coefficients
     for pointer, detail in error.errors or [("", error.detail)]:
         place = pointer[1:].replace("/", ".")
         parts = ["standard input" if file == _STANDARD_INPUT else file, place, detail]
@@ -305,7 +298,8 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
             renamed = _NAME.sub(
                 lambda each: _flag(each[0]) if each[0] in names else each[0], detail
             )
-            said = detail.replace(NOT_NUMBERS, _NOT_NUMBERS) if place in _TEXTS else renamed
+            is_text = place in names and names[place].annotation not in NUMBERS
+            said = detail.replace(NOT_NUMBERS, _NOT_NUMBERS) if is_text else renamed
             parts = [_flag(place), said]
         _say(arguments, *parts)
     return _STATUS.get(error.type, ExitStatus.INVALID_INPUT)

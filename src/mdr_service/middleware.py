@@ -15,7 +15,7 @@ from starlette.exceptions import HTTPException
 from starlette.middleware.cors import CORSMiddleware
 from starlette.requests import ClientDisconnect
 from starlette.responses import Response
-from starlette.routing import Match, Route
+from starlette.routing import Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from uvicorn.protocols.http.flow_control import HIGH_WATER_LIMIT
 
@@ -254,10 +254,7 @@ async def _http_exception(request: Request, error: HTTPException) -> Response:
 
 def _allowed(request: Request) -> str:
     """Return the methods of all routes of a path; the framework lists one route only."""
-    scope = {**request.scope, "method": ""}
-    routes = [route for route in request.app.routes if isinstance(route, Route)]
-    methods = [
-        route.methods or set() for route in routes if route.matches(scope)[0] is not Match.NONE
-    ]
-    allowed = set().union(*methods)
+    path = getattr(request.scope.get("route"), "path", "")
+    routes = [each for each in request.app.routes if isinstance(each, Route) and each.path == path]
+    allowed = {method for route in routes for method in route.methods or ()}
     return ", ".join(sorted(allowed | ({"HEAD"} if "GET" in allowed else set())))

@@ -65,6 +65,8 @@ _Number = Annotated[float, BeforeValidator(_number)] | None
 _Load = Annotated[Any, BeforeValidator(_load), WithJsonSchema({"type": "number"})] | None
 _Whole = Annotated[int, BeforeValidator(_whole)] | None
 _Length = Annotated[int, Field(ge=2, le=SETTINGS.max_length), BeforeValidator(_whole)] | None
+NUMBERS: Final = (_Number, _Load, _Whole, _Length)
+"""Types of the parameters that are numbers; others are words."""
 # Types of parameters by the JSON type of the field.
 _TYPES: Final[Mapping[str, Any]] = {"number": _Number, "integer": _Whole}
 _WORDS: Final[Mapping[str, Any]] = {
@@ -76,7 +78,7 @@ _WORDS: Final[Mapping[str, Any]] = {
 }
 # Groups whose parameters carry their name.
 _LAYERS: Final = frozenset({"material.layer", "layer"})
-_LOADS: Final = frozenset({"load", "tangential", "torsion", "oscillation"})
+_LOADS: Final = frozenset(contacts.LOADS)
 _RENAMED: Final = {"cycles.normal.amplitude": "normal_amplitude", "radius": "r"}
 _TEXTS: Final = {
     "profile.kind": "Kind of profile; POST takes series and tables as well",

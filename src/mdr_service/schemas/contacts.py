@@ -270,8 +270,8 @@ Material = Annotated[
 ]
 
 
-# Fields of the loads, normal and tangential.
-_LOADS = ("load", "tangential", "torsion", "oscillation")
+LOADS = ("load", "tangential", "torsion", "oscillation")
+"""Fields of the loads, normal and tangential."""
 
 
 class Axes(NamedTuple):
@@ -304,7 +304,7 @@ class Query(Strict):
     def controls(self) -> dict[str, Choice]:
         """Given loads by the name of their field; empty for a load path."""
         fields = vars(self)
-        return {name: fields[name] for name in _LOADS if fields.get(name)}
+        return {name: fields[name] for name in LOADS if fields.get(name)}
 
     @property
     def loads(self) -> int:

@@ -84,7 +84,7 @@ def panels_of(
         return "", _fitted(query.axes, result)
     if "x" not in result and "radius" not in result:
         return _over_loads(query.axes, result, units)
-    control, loads = next(iter(_varied(query, result).items()), ("", [0.0]))
+    control, loads = _varied(query, result)
     if "radius" in result:
         return _over_positions("radius", control, loads, result, units)
     if result["x"].size == 1 or result["z"].size == 1:
@@ -169,13 +169,13 @@ def _selection(count: int) -> tuple[str, list[int]]:
     return (f"{_DRAWN} of {count} loads" if count > _DRAWN else ""), chosen
 
 
-def _varied(query: Any, result: Mapping[str, Any]) -> dict[str, list[float]]:
-    """Return the loads that tell curves apart, by name, first those of the most values."""
+def _varied(query: Any, result: Mapping[str, Any]) -> tuple[str, list[float]]:
+    """Return the name and values of the loads that tell curves apart, those of the most values."""
     if query.axes.x == "cycles":
-        return {"cycles": result["cycles"]}
-    lists = {each.control: each.value for each in query.controls.values() if each.count > 1}
-    found = sorted(lists.items(), key=lambda each: -len(set(each[1])))
-    return {name: values for name, values in found if len(set(values)) > 1}
+        return "cycles", result["cycles"]
+    lists = [(each.control, each.value) for each in query.controls.values() if each.count > 1]
+    name, values = max(lists, key=lambda each: len(set(each[1])), default=("", [0.0]))
+    return (name, values) if len(set(values)) > 1 else ("", [0.0])
 
 
 def _name(control: str, value: float, units: Units | None) -> str:
