@@ -39,10 +39,8 @@ def is_short(name: str, query: Query) -> bool:
     is_slow = (
         QUERIES[name].is_long
         or query.profile.kind == "tabulated"
-        or query.material.has("yield_strength")
-        or query.material.has("work_of_adhesion")
+        or query.material.model_fields_set & {"yield_strength", "work_of_adhesion", "layer"}
         or any(each.control == "maximum_pressure" for each in query.controls.values())
-        or query.material.has("layer")
     )
     size = query.numbers + _PER_LOAD * (query.path.samples if query.path else query.loads)
     if isinstance(query.profile, SeriesProfile):
@@ -89,12 +87,10 @@ def respond(
         result: Any = kind.result(query, source)
         if media_type in PICTURES:
             return WRITE[media_type](query, result, appearance)
-        if members:
-            for member in members:
-                if member not in result:
-                    detail = f"there is no such member; there are {', '.join(result)}"
-                    raise InputError(("answers",), detail)
-            result = {member: result[member] for member in members}
+        if not result.keys() >= set(members):
+            detail = f"there is no such member; there are {', '.join(result)}"
+            raise InputError(("answers",), detail)
+        result = {member: result[member] for member in members or result}
     return WRITE[media_type](result)
 
 

@@ -129,8 +129,7 @@ class ServiceMiddleware:
             _logger.exception("internal error, response 500")
             await problem_response(problems.INTERNAL_ERROR)(scope, receive, sender)
         finally:
-            if record.held:
-                self.transfers.remove(record)
+            self.transfers.remove(record)
             _log(record, scope.get("route"))
 
 

@@ -133,11 +133,11 @@ class Parameters(ResponseParameters):
             values["radius"] = [values["radius"]]
         for name in {"quantities", "fit"} & values.keys():
             values[name] = values[name].split(",")
-        request = nested(values) | dict(members or {})
-        for group in ("material", "load", "oscillation", "cycles"):
-            if group in needed:
-                request.setdefault(group, {})
-        return self.model.model_validate(request)
+        # What is missing is reported for the parameters of an empty group.
+        groups: dict[str, Any] = {
+            name: {} for name in needed & {"material", "load", "oscillation", "cycles"}
+        }
+        return self.model.model_validate(groups | nested(values) | dict(members or {}))
 
     @contextmanager
     def pointing(self) -> Iterator[None]:

@@ -200,9 +200,7 @@ def _solve_alone(spec: Spec, given: Mapping[str, Any]) -> dict[str, Any]:
         failure = problems.to_problem(error)
     except Exception:  # noqa: BLE001 -- an internal error of one case must not end the sweep
         failure = problems.INTERNAL_ERROR
-    listed = problems.document(failure).get("errors", ())
-    message = "; ".join(f"{each['pointer']} {each['detail']}" for each in listed)
-    return {ERROR: message or failure.detail}
+    return {ERROR: "; ".join(map(" ".join, failure.errors)) or failure.detail}
 
 
 def _validated(spec: Spec, given: Mapping[str, Any]) -> Query:

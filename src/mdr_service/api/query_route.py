@@ -26,14 +26,6 @@ MAX_PARSED_ON_LOOP: Final = 16_384
 _CACHED: Final = {"Cache-Control": "max-age=3600", "Vary": "Accept"}
 
 
-def _form_of(request: Request, name: str, given: ResponseParameters) -> tuple[str, Appearance]:
-    """Return media type and appearance of the response, from parameters or from ``Accept``."""
-    accept = header(request.scope, b"accept")
-    # A batch is JSON only.
-    found = media_type(given.format, accept, ["json"] if name == "batch" else list(FORMATS))
-    return found, appearance(found, given.size, given.units)
-
-
 async def _answer(
     request: Request,
     name: str,
@@ -95,7 +87,10 @@ class QueryRoute(APIRoute):
                 given = parameters.model_validate(texts)
             except ValidationError as error:
                 raise problems.from_validation(error, parameters) from None
-            form = _form_of(request, name, given)
+            # A batch is JSON only.
+            offered = ["json"] if name == "batch" else FORMATS
+            found = media_type(given.format, header(request.scope, b"accept"), offered)
+            form = found, appearance(found, given.size, given.units)
             if isinstance(given, Parameters):
                 with given.pointing():
                     # A compute process expands ranges, because they can be long.

@@ -28,9 +28,7 @@ _Regime = Annotated[
 _NULL = "null where infinite, with a warning `singular`"
 _ROUND = "under a given force by the model, of round bodies or a given thickness"
 _UNBOUNDED = "null if wear is unbounded"
-_of_pressure = partial(
-    quantity,
-    "1",
+_PRESSURE_DATA_ERROR = _number(
     "Error of pressures by the points of a table, an estimate relative to the largest pressure; "
     "null where that is infinite",
     default=None,
@@ -117,7 +115,7 @@ class ContactAnswer(SolvedAnswer):
         "Error by the points of a table, an estimate relative to depth and force",
         default=None,
     )
-    pressure_data_error: list[float | None] = _of_pressure()
+    pressure_data_error: list[float | None] = _PRESSURE_DATA_ERROR
 
 
 class NormalAnswer(ContactAnswer):
@@ -313,7 +311,7 @@ class StressAnswer(SolvedAnswer):
         "Tangential load q_x of the equivalent foundation at x = r, by load and radius",
         default=None,
     )
-    pressure_data_error: list[float | None] = _of_pressure()
+    pressure_data_error: list[float | None] = _PRESSURE_DATA_ERROR
 
 
 class LargestStress(Answer):
