@@ -134,33 +134,22 @@ def _over_loads(
             control, values = axes.curves, unique
             parts = [parts[0][group[parts[0]] == i] for i in range(unique.size)]
     title, chosen = _selection(len(parts))
-    return title, [
-        Panel(
-            axes.x,
-            y,
-            [
-                DrawnCurve(
-                    at[parts[i]], np.asarray(result[y])[parts[i]], _name(control, values[i], units)
-                )
-                for i in chosen
-            ],
-        )
-        for y in axes.y
-    ]
+    named = [(parts[i], _name(control, values[i], units)) for i in chosen]
+    panels = list[Panel | Map]()
+    for y in axes.y:
+        of_all = np.asarray(result[y])
+        curves = [DrawnCurve(at[part], of_all[part], name) for part, name in named]
+        panels.append(Panel(axes.x, y, curves))
+    return title, panels
 
 
 def _fitted(axes: Axes, result: Mapping[str, Any]) -> list[Panel | Map]:
     """Return the panels of a measured curve with the fitted one, and of its residuals."""
-    order = np.argsort(result[axes.x])
-    if axes.in_order:
-        order = np.arange(order.size)
+    order = slice(None) if axes.in_order else np.argsort(result[axes.x])
     at, fit, residual = (np.asarray(result[name])[order] for name in (axes.x, *axes.y))
     measured = DrawnCurve(at, fit + residual, "measured", is_measured=True)
     fitted, left = DrawnCurve(at, fit, "fitted"), DrawnCurve(at, residual, is_measured=True)
-    return [
-        Panel(axes.x, y, curves)
-        for y, curves in zip(axes.y, ([measured, fitted], [left]), strict=True)
-    ]
+    return [Panel(axes.x, axes.y[0], [measured, fitted]), Panel(axes.x, axes.y[1], [left])]
 
 
 def _selection(count: int) -> tuple[str, list[int]]:
