@@ -59,9 +59,6 @@ class LogStream:
             LOST_LINES.inc()
 
 
-LOG: Final = LogStream()
-
-
 @dataclass(slots=True)
 class RequestRecord:
     """Log record of one request."""
@@ -114,7 +111,7 @@ LOGGING: Final[Mapping[str, Any]] = {
         "stderr": {
             "class": "logging.StreamHandler",
             "formatter": "lines",
-            "stream": "ext://mdr_service.observability.LOG",
+            "stream": LogStream(),
         }
     },
     "root": {"handlers": ["stderr"], "level": "WARNING"},

@@ -1,7 +1,7 @@
 """Numbers of a request: strict, finite, bounded, each with its dimension."""
 
 import re
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
@@ -95,13 +95,12 @@ Signed = Annotated[float, Field(ge=-LARGEST, le=LARGEST, json_schema_extra=_KEYW
 
 BRANCHES: Final = frozenset({"<number>", "<list>", "<rigid>", "<body>", "<moduli>", "<bodies>"})
 """Branches of unions, which pydantic inserts into the location of an error."""
-# The discriminator restricts errors to the branch to which the value belongs.
-_BY_TYPE: Final = Discriminator(lambda value: "<list>" if isinstance(value, list) else "<number>")
-ScalarOrArray = Annotated[
-    Annotated[Size, Tag("<number>")] | Annotated[list[Size], Field(**MANY), Tag("<list>")],
-    _BY_TYPE,
+
+_Number = TypeVar("_Number")
+_OneOrMany = Annotated[
+    Annotated[_Number, Tag("<number>")] | Annotated[list[_Number], Field(**MANY), Tag("<list>")],
+    # The discriminator restricts errors to the branch to which the value belongs.
+    Discriminator(lambda value: "<list>" if isinstance(value, list) else "<number>"),
 ]
-SignedScalarOrArray = Annotated[
-    Annotated[Signed, Tag("<number>")] | Annotated[list[Signed], Field(**MANY), Tag("<list>")],
-    _BY_TYPE,
-]
+ScalarOrArray = _OneOrMany[Size]
+SignedScalarOrArray = _OneOrMany[Signed]
