@@ -16,7 +16,6 @@ _pressure = partial(quantity, "pressure")
 _stiffness = partial(quantity, "force/length")
 _energy = partial(quantity, "force*length")
 _velocity = partial(quantity, "length/time")
-_volume = partial(quantity, "length^3")
 _limit = partial(quantity, "as the quantity")
 
 _Field = list[list[float | None]]
@@ -380,7 +379,7 @@ class WearAnswer(SolvedAnswer):
         f"Indentation depth d in the limiting state; {_UNBOUNDED}"
     )
     normal_force: list[float] = _force("Normal force F_N in the limiting state")
-    worn_volume: list[float | None] = _volume(f"Worn volume V; {_UNBOUNDED}")
+    worn_volume: list[float | None] = quantity("length^3", f"Worn volume V; {_UNBOUNDED}")
     regime: _Regime
     radius: list[float] = _length("Radius r, requested or chosen", default=None)
     initial_profile: list[float | None] = _length(
@@ -407,7 +406,7 @@ class EvolutionAnswer(SolvedAnswer):
     """
 
     cycles: list[float] = _number("Number of cycles, as requested")
-    worn_volume: list[float] = _volume("Worn volume V")
+    worn_volume: list[float] = quantity("length^3", "Worn volume V")
     indentation_depth: list[float] = _length("Indentation depth d; it grows if F_N is constant")
     normal_force: list[float] = _force("Normal force F_N; it falls if d is constant")
     stick_radius: list[float] = _length("Stick radius c")
