@@ -9,9 +9,8 @@ import argparse
 import logging
 import re
 import sys
-from collections.abc import Container
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from pydantic.fields import FieldInfo
@@ -25,12 +24,20 @@ from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
 from mdr_service.queries import QUERIES
-from mdr_service.query_parameters import PARAMETERS, parameters_of
+from mdr_service.query_parameters import NUMBERS, PARAMETERS, parameters_of
 from mdr_service.schemas.fits import FitQuery
 from mdr_service.schemas.profiles import OF_NUMBERS
 from mdr_service.sentences import NOT_NUMBERS
 from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
+
+
+class _Option(NamedTuple):
+    """Option: the name of its value in the help, and its description."""
+
+    metavar: str
+    help: str
+
 
 _STATUS: Final = {
     problems.INTERNAL: ExitStatus.INTERNAL_ERROR,
@@ -39,18 +46,36 @@ _STATUS: Final = {
 _STANDARD_INPUT: Final = "-"
 # A fit takes options beside the file of its curve, which a URL does not hold.
 _PARAMETERS: Final = PARAMETERS | {"fit": parameters_of(FitQuery)}
-# Options that are not numbers.
-_TEXTS: Final = frozenset(
-    {"kind", "scale", "answers", "quantities", "held_1", "held_2", "fit", "segment", "drift"}
-    | {"layer_base"}
-)
 # Heights between which an area function describes a tip.
 _HEIGHTS: Final = ("largest_height", "lowest_height")
+# Options of files in place of parameters, with the name of their value and their help.
+_OF_FILES: Final = {
+    "table": _Option(
+        "CSV", "table of a measured profile, in place of --kind; it is converted to metres"
+    ),
+    "length_unit": _Option(
+        "m|mm|um|nm",
+        "unit of the table, where its heading names none; two, as mm,um, for r and f; and of a "
+        "tip's area function",
+    ),
+    "area_coefficients": _Option(
+        "C0,C1,...",
+        "tip with the area A(h) = C0 h^2 + C1 h + C2 h^(1/2) + ..., in place of --kind",
+    ),
+    "largest_height": _Option("NUMBER", "height h up to which the area function describes the tip"),
+    "lowest_height": _Option(
+        "NUMBER",
+        "height h from which the area function is valid (default: 0); below, the tip is continued "
+        "smoothly",
+    ),
+    "curve_units": _Option(
+        "DEPTH,FORCE",
+        "units of the curve in FILE, such as nm,uN, where its headings name none; a curve is "
+        "converted to metres and newtons, the units of the other options",
+    ),
+}
 # Options beside the parameters of the request.
-_OTHER_OPTIONS: Final = frozenset(
-    {"output", "size", "units", "table", "area_coefficients", "length_unit", "curve_units"}
-    | {*_HEIGHTS}
-)
+_OTHER_OPTIONS: Final = frozenset({"output", "size", "units", *_OF_FILES})
 # Names of parameters that cannot be words of a sentence.
 _NAME: Final = re.compile(r"\w+_\w+")
 _ONCE: Final = (
@@ -84,50 +109,20 @@ def declare(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="file for the response (default: standard output)",
     )
+    parser.set_defaults(**dict.fromkeys(_OF_FILES))
     if fields := _options(parser.get_default("command")):
         group = parser.add_argument_group("request by options, in place of a file")
-        group.add_argument(
-            "--table",
-            metavar="CSV",
-            help="table of a measured profile, in place of --kind; it is converted to metres",
-        )
-        group.add_argument(
-            "--length-unit",
-            metavar="m|mm|um|nm",
-            help="unit of the table, where its heading names none; two, as mm,um, for r and f; "
-            "and of a tip's area function",
-        )
-        group.add_argument(
-            "--area-coefficients",
-            metavar="C0,C1,...",
-            help="tip with the area A(h) = C0 h^2 + C1 h + C2 h^(1/2) + ..., in place of --kind",
-        )
-        group.add_argument(
-            "--largest-height",
-            metavar="NUMBER",
-            help="height h up to which the area function describes the tip",
-        )
-        group.add_argument(
-            "--lowest-height",
-            metavar="NUMBER",
-            help="height h from which the area function is valid (default: 0); below, the tip is "
-            "continued smoothly",
-        )
-        if parser.get_default("command") == "fit":
-            group.add_argument(
-                "--curve-units",
-                metavar="DEPTH,FORCE",
-                help="units of the curve in FILE, such as nm,uN, where its headings name none; "
-                "a curve is converted to metres and newtons, the units of the other options",
-            )
+        for name, option in _OF_FILES.items():
+            if name != "curve_units" or parser.get_default("command") == "fit":
+                group.add_argument(_flag(name), **option._asdict())
         # By default -1e-3 counts as an option; argparse has no public way to change that.
         parser._negative_number_matcher = re.compile(r"-\.?\d")  # noqa: SLF001
         for name, field in fields.items():
             group.add_argument(
-                f"--{name.replace('_', '-')}",
+                _flag(name),
                 action="append",
                 default=argparse.SUPPRESS,
-                metavar="TEXT" if name in _TEXTS else "NUMBER",
+                metavar="NUMBER" if field.annotation in NUMBERS else "TEXT",
                 help=(field.description or "").replace("%", "%%"),
             )
     parser.description = (
@@ -212,9 +207,7 @@ def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
 
     The query parameters then need a placeholder for the kind of profile.
     """
-    file, area, unit = (
-        vars(arguments).get(name) for name in ("table", "area_coefficients", "length_unit")
-    )
+    file, area, unit = arguments.table, arguments.area_coefficients, arguments.length_unit
     if not (file or area):
         if unit:
             raise InputError(("length_unit",), "is valid only with --table or --area-coefficients")
@@ -222,14 +215,14 @@ def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
     option = "table" if file else "area_coefficients"
     fields = _PARAMETERS[arguments.command].fields
     if replaced := [name for name in given if fields.get(name, "").startswith("profile.")]:
-        raise InputError((option,), f"is a profile: leave out --{replaced[0].replace('_', '-')}")
+        raise InputError((option,), f"is a profile: leave out {_flag(replaced[0])}")
     given["kind"] = OF_NUMBERS[0]
     if file:
         r, f = _thinned(
             arguments, read_table(file, unit.split(",") if unit and "," in unit else unit)
         )
     else:
-        r, f = _tip(str(area), [vars(arguments)[name] for name in _HEIGHTS], unit or "m")
+        r, f = _tip(area, [vars(arguments)[name] for name in _HEIGHTS], unit or "m")
     return {"profile": {"kind": "tabulated", "r": r.tolist(), "f": f.tolist()}}
 
 
@@ -295,8 +288,7 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
     by_options = any(name in arguments for name in names)
     by_curve = by_options and arguments.command == "fit"
     file = arguments.file or _STANDARD_INPUT
-    table = vars(arguments).get("table")
-    area = vars(arguments).get("area_coefficients")
+    table, area = arguments.table, arguments.area_coefficients
     for pointer, detail in error.errors or [("", error.detail)]:
         place = pointer[1:].replace("/", ".")
         parts = ["standard input" if file == _STANDARD_INPUT else file, place, detail]
@@ -305,7 +297,7 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
         elif area and f"{place}.".startswith(("kind.", "profile.")):
             name = place.removeprefix("profile.")
             option = name if name in _HEIGHTS else "area_coefficients"
-            parts = [_option(option, _OTHER_OPTIONS), detail]
+            parts = [_flag(option), detail]
         elif table and f"{place}.".startswith(("kind.", "profile.", "table.")):
             parts = [table, place.partition(".")[2], detail]
         elif by_curve and place.partition(".")[0] in {"table", *MeasuredCurve._fields}:
@@ -313,16 +305,19 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
         elif by_curve and place == "units":
             parts = ["--curve-units", detail]
         elif by_options or place in _OTHER_OPTIONS:
-            renamed = _NAME.sub(lambda each: _option(each[0], names), detail)
-            said = detail.replace(NOT_NUMBERS, _NOT_NUMBERS) if place in _TEXTS else renamed
-            parts = [_option(place, [place]), said]
+            renamed = _NAME.sub(
+                lambda each: _flag(each[0]) if each[0] in names else each[0], detail
+            )
+            is_text = place in names and names[place].annotation not in NUMBERS
+            said = detail.replace(NOT_NUMBERS, _NOT_NUMBERS) if is_text else renamed
+            parts = [_flag(place), said]
         _say(arguments, *parts)
     return _STATUS.get(error.type, ExitStatus.INVALID_INPUT)
 
 
-def _option(name: str, names: Container[str]) -> str:
-    """Return the option of a parameter of the service; other names are unchanged."""
-    return f"--{name.replace('_', '-')}" if name and name in names else name
+def _flag(name: str) -> str:
+    """Return the option of a parameter; empty without a name."""
+    return name and f"--{name.replace('_', '-')}"
 
 
 def _say(arguments: argparse.Namespace, *parts: str) -> None:

@@ -1,15 +1,11 @@
 """Several queries in one request, and their responses."""
 
-from collections.abc import Callable
-from functools import cached_property
 from typing import Annotated, Any
 
-from pydantic import Field, ValidationError, WrapValidator
+from pydantic import Field, WrapValidator
 
-from mdr_core.errors import InputError
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.answers import Answer, Problem
-from mdr_service.schemas.contacts import Query
 from mdr_service.schemas.quantities import Strict, left_out
 from mdr_service.settings import SETTINGS
 
@@ -27,38 +23,14 @@ class BatchItem(Strict):
         "and so on."
     )
 
-    @cached_property
-    def query(self) -> Query | ValidationError | InputError:
-        """Query, or the reason why the request is invalid."""
-        if self.ask not in QUERIES:
-            return InputError((), f"there is no such query; there are {', '.join(QUERIES)}")
-        try:
-            return QUERIES[self.ask].request.model_validate(self.request)
-        except ValidationError as error:
-            return error
-
-
-def _or_error(
-    value: object, validate: Callable[[object], BatchItem]
-) -> BatchItem | ValidationError:
-    """Return the entry of a batch, or the reason why it is invalid, for its own response."""
-    try:
-        return validate(value)
-    except ValidationError as error:
-        return error
-
 
 class BatchQuery(Strict):
     """Queries of any kind, each with its own response."""
 
-    queries: list[Annotated[BatchItem, WrapValidator(_or_error)]] = Field(
+    # Each entry is validated for its own response.
+    queries: list[Annotated[BatchItem, WrapValidator(lambda entry, _: entry)]] = Field(
         description="The queries.", min_length=1, max_length=SETTINGS.max_batch
     )
-
-    @property
-    def entries(self) -> list[BatchItem | ValidationError]:
-        """The queries; an invalid entry is replaced by the reason why it is invalid."""
-        return [*self.queries]
 
 
 class BatchItemAnswer(Answer):

@@ -69,6 +69,8 @@ class ComputeProcess:
         self._process = process
         self._calls = cast("StreamWriter", process.stdin)
         self._outcomes = cast("StreamReader", process.stdout)
+        self.ended = create_task(process.wait())
+        """Exit status, once the process has ended."""
         self.usable = True
         self.reason_if_ended = "start"
         """Reason to report if the process ends, unless another one is known."""
@@ -107,10 +109,6 @@ class ComputeProcess:
         self.usable = False
         with suppress(ProcessLookupError):
             self._process.kill()
-
-    async def wait(self) -> int:
-        """Return the exit status of the process once it has ended."""
-        return await self._process.wait()
 
 
 @dataclass(eq=False)
@@ -176,7 +174,6 @@ class ComputePool:
     async def _lend_process(self, self_test: Callable[[], object]) -> None:
         """Start a process, assign it to computations, and count its end, for any reason."""
         process = await ComputeProcess.start()
-        ended = create_task(process.wait())
         try:
             _raised(await process.call(_START_SECONDS, self_test))
             process.reason_if_ended = "lost"
@@ -184,17 +181,16 @@ class ComputePool:
             self._offer(process)
             if len(self._processes) == self._settings.compute_processes:
                 self._settled.set()
-            await wait([ended])
+            await wait([process.ended])
         finally:
             self._processes.discard(process)
             if process in self._idle:
                 self._idle.remove(process)
-            if self._supervised:
-                observability.RESTARTS.labels(process.reason_if_ended).inc()
             process.kill()
-            status = await ended
+            status = await process.ended
             if self._supervised:
                 reason = process.reason_if_ended
+                observability.RESTARTS.labels(reason).inc()
                 _logger.warning("compute process ended with status %d: %s", status, reason)
 
     def _offer(self, process: ComputeProcess) -> None:

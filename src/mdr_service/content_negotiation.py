@@ -1,7 +1,7 @@
 """Media type of a response, by ``format`` or the header ``Accept``, and appearance of a picture."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection
 from typing import Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, SkipValidation
@@ -43,7 +43,7 @@ _THREE_NAMES: Final = (
 _WEIGHT: Final = re.compile(r"(?:0(?:\.\d{0,3})?|1(?:\.0{0,3})?)", re.ASCII)
 
 
-def media_type(name: str | None, accept: str, offered: Sequence[str] = tuple(FORMATS)) -> str:
+def media_type(name: str | None, accept: str, offered: Collection[str]) -> str:
     """Return the media type of a named format; without a name the header ``Accept`` selects it.
 
     Among formats of equal weight the header selects the first that is offered. Raises ServiceError

@@ -22,6 +22,8 @@ from mdr_service.serializers import JSON, PICTURES, WRITE, write_json
 from mdr_service.serializers.picture import AS_USUAL, Appearance
 from mdr_service.settings import SETTINGS
 
+_Entry = tuple[str, Query] | ServiceError
+"""Name of the query in an entry of a batch and the query, or the reason why it is invalid."""
 _logger: Final = logging.getLogger(__name__)
 # Maximum number of values in the response to a query that runs on the event loop; each load has
 # about ten; a series has as many for each of its terms, and two spheres for each sphere. Fields at
@@ -37,10 +39,8 @@ def is_short(name: str, query: Query) -> bool:
     is_slow = (
         QUERIES[name].is_long
         or query.profile.kind == "tabulated"
-        or query.material.has("yield_strength")
-        or query.material.has("work_of_adhesion")
+        or query.material.model_fields_set & {"yield_strength", "work_of_adhesion", "layer"}
         or any(each.control == "maximum_pressure" for each in query.controls.values())
-        or query.material.has("layer")
     )
     size = query.numbers + _PER_LOAD * (query.path.samples if query.path else query.loads)
     if isinstance(query.profile, SeriesProfile):
@@ -77,8 +77,9 @@ def respond(
     elif isinstance(query, dict):
         query = PARAMETERS[name].model_validate(query).query()
     if isinstance(query, BatchQuery):
-        _require_few_numbers(query)
-        return b'{"answers":[' + b",".join(map(_entry, query.entries)) + b"]}"
+        entries = [_parsed(each) for each in query.queries]
+        _require_few_numbers(entries)
+        return b'{"answers":[' + b",".join(map(_entry, entries)) + b"]}"
     # The members are selected last, because complete results are checked for overflow.
     with np.errstate(all="ignore"):
         kind = QUERIES[name]
@@ -86,21 +87,29 @@ def respond(
         result: Any = kind.result(query, source)
         if media_type in PICTURES:
             return WRITE[media_type](query, result, appearance)
-        if members:
-            for member in members:
-                if member not in result:
-                    detail = f"there is no such member; there are {', '.join(result)}"
-                    raise InputError(("answers",), detail)
-            result = {member: result[member] for member in members}
+        if not result.keys() >= set(members):
+            detail = f"there is no such member; there are {', '.join(result)}"
+            raise InputError(("answers",), detail)
+        result = {member: result[member] for member in members or result}
     return WRITE[media_type](result)
 
 
-def _require_few_numbers(batch: BatchQuery) -> None:
+def _parsed(entry: object) -> _Entry:
+    try:
+        item = BatchItem.model_validate(entry)
+        if item.ask in QUERIES:
+            return item.ask, QUERIES[item.ask].request.model_validate(item.request)
+    except ValidationError as error:
+        return problems.from_validation(error)
+    return problems.invalid([("", f"there is no such query; there are {', '.join(QUERIES)}")])
+
+
+def _require_few_numbers(entries: list[_Entry]) -> None:
     """Raise ServiceError if the responses together exceed the limit of numbers in one response."""
     numbers, most = 0, SETTINGS.max_numbers
-    for index, item in enumerate(batch.entries):
-        if isinstance(item, BatchItem) and isinstance(item.query, Query):
-            own = max(item.query.loads, item.query.numbers)
+    for index, entry in enumerate(entries):
+        if not isinstance(entry, ServiceError):
+            own = max(entry[1].loads, entry[1].numbers)
             # A query that exceeds the limit by itself is rejected by itself.
             numbers += own if own <= most else 0
         if numbers > most:
@@ -109,13 +118,11 @@ def _require_few_numbers(batch: BatchQuery) -> None:
             raise problems.invalid([(place, detail)])
 
 
-def _entry(item: BatchItem | ValidationError) -> bytes:
-    if isinstance(item, ValidationError):
-        return _problem(problems.from_validation(item, BatchItem))
-    if not isinstance(item.query, Query):
-        return _problem(problems.to_problem(item.query))
+def _entry(entry: _Entry) -> bytes:
+    if isinstance(entry, ServiceError):
+        return _problem(entry)
     try:
-        content = respond(item.ask, item.query, JSON)
+        content = respond(*entry, JSON)
     except problems.FAILURES as error:
         return _problem(problems.to_problem(error))
     except Exception:

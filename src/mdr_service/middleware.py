@@ -15,7 +15,7 @@ from starlette.exceptions import HTTPException
 from starlette.middleware.cors import CORSMiddleware
 from starlette.requests import ClientDisconnect
 from starlette.responses import Response
-from starlette.routing import Match, Route
+from starlette.routing import Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from uvicorn.protocols.http.flow_control import HIGH_WATER_LIMIT
 
@@ -129,8 +129,7 @@ class ServiceMiddleware:
             _logger.exception("internal error, response 500")
             await problem_response(problems.INTERNAL_ERROR)(scope, receive, sender)
         finally:
-            if record.held:
-                self.transfers.remove(record)
+            self.transfers.remove(record)
             _log(record, scope.get("route"))
 
 
@@ -191,13 +190,13 @@ def problem_response(error: ServiceError, headers: Mapping[str, str] | None = No
     return Response(orjson.dumps(document), error.type.status, headers, problems.MEDIA_TYPE)
 
 
-def header(scope: Scope, name: bytes, default: str = "") -> str:
+def header(scope: Scope, name: bytes) -> str:
     """Return the header of a lower-case name, several lines as one list (RFC 9110, 5.3).
 
     The framework's mapping of all headers takes longer to build than this search.
     """
     lines = [value for each, value in scope["headers"] if each == name]
-    return b", ".join(lines).decode("latin-1") if lines else default
+    return b", ".join(lines).decode("latin-1")
 
 
 async def read_body(request: Request, *, any_type: bool = False) -> bytes:
@@ -254,10 +253,7 @@ async def _http_exception(request: Request, error: HTTPException) -> Response:
 
 def _allowed(request: Request) -> str:
     """Return the methods of all routes of a path; the framework lists one route only."""
-    scope = {**request.scope, "method": ""}
-    routes = [route for route in request.app.routes if isinstance(route, Route)]
-    methods = [
-        route.methods or set() for route in routes if route.matches(scope)[0] is not Match.NONE
-    ]
-    allowed = set().union(*methods)
+    path = getattr(request.scope.get("route"), "path", "")
+    routes = [each for each in request.app.routes if isinstance(each, Route) and each.path == path]
+    allowed = {method for route in routes for method in route.methods or ()}
     return ", ".join(sorted(allowed | ({"HEAD"} if "GET" in allowed else set())))

@@ -58,12 +58,6 @@ class LogStream:
         except OSError:
             LOST_LINES.inc()
 
-    def flush(self) -> None:
-        """Do nothing, because every line is written at once."""
-
-
-LOG: Final = LogStream()
-
 
 @dataclass(slots=True)
 class RequestRecord:
@@ -117,7 +111,7 @@ LOGGING: Final[Mapping[str, Any]] = {
         "stderr": {
             "class": "logging.StreamHandler",
             "formatter": "lines",
-            "stream": "ext://mdr_service.observability.LOG",
+            "stream": LogStream(),
         }
     },
     "root": {"handlers": ["stderr"], "level": "WARNING"},

@@ -65,6 +65,8 @@ _Number = Annotated[float, BeforeValidator(_number)] | None
 _Load = Annotated[Any, BeforeValidator(_load), WithJsonSchema({"type": "number"})] | None
 _Whole = Annotated[int, BeforeValidator(_whole)] | None
 _Length = Annotated[int, Field(ge=2, le=SETTINGS.max_length), BeforeValidator(_whole)] | None
+NUMBERS: Final = (_Number, _Load, _Whole, _Length)
+"""Types of the parameters that are numbers; others are words."""
 # Types of parameters by the JSON type of the field.
 _TYPES: Final[Mapping[str, Any]] = {"number": _Number, "integer": _Whole}
 _WORDS: Final[Mapping[str, Any]] = {
@@ -76,7 +78,7 @@ _WORDS: Final[Mapping[str, Any]] = {
 }
 # Groups whose parameters carry their name.
 _LAYERS: Final = frozenset({"material.layer", "layer"})
-_LOADS: Final = frozenset({"load", "tangential", "torsion", "oscillation"})
+_LOADS: Final = frozenset(contacts.LOADS)
 _RENAMED: Final = {"cycles.normal.amplitude": "normal_amplitude", "radius": "r"}
 _TEXTS: Final = {
     "profile.kind": "Kind of profile; POST takes series and tables as well",
@@ -131,11 +133,11 @@ class Parameters(ResponseParameters):
             values["radius"] = [values["radius"]]
         for name in {"quantities", "fit"} & values.keys():
             values[name] = values[name].split(",")
-        request = nested(values) | dict(members or {})
-        for group in ("material", "load", "oscillation", "cycles"):
-            if group in needed:
-                request.setdefault(group, {})
-        return self.model.model_validate(request)
+        # What is missing is reported for the parameters of an empty group.
+        groups: dict[str, Any] = {
+            name: {} for name in needed & {"material", "load", "oscillation", "cycles"}
+        }
+        return self.model.model_validate(groups | nested(values) | dict(members or {}))
 
     @contextmanager
     def pointing(self) -> Iterator[None]:

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
 from mdr_core.validation import BODIES, FINITE, POSITIVE, not_negative
-from mdr_service.batch import BatchQuery
+from mdr_service.batch import BatchItem, BatchQuery
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.contacts import Choice
 from mdr_service.schemas.profiles import MODELS, OF_NUMBERS
@@ -53,8 +53,9 @@ _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     ("too_short", "bodies"): BODIES,
 }
 _BOUNDS: Final = {"ge": "at least", "gt": "greater than", "le": "at most", "lt": "less than"}
-_MODELS: Final[Sequence[_Model]] = (BatchQuery, *(kind.request for kind in QUERIES.values()))
-REQUESTS: Final[Mapping[str, _Model]] = {model.__name__: model for model in _MODELS}
+REQUESTS: Final[Mapping[str, _Model]] = {
+    kind.request.__name__: kind.request for kind in QUERIES.values()
+} | {"BatchItem": BatchItem, "BatchQuery": BatchQuery}
 """Models of requests by their name, which is the title of a ValidationError."""
 
 

@@ -153,11 +153,10 @@ def _call(
         values: Any = getattr(source if hasattr(type(source), name) else contact, name)
         if values is None:
             # These profiles have no data error.
-            results[name] = np.full(size, nan)
-            continue
-        results[name] = np.broadcast_to(values, (size,))
-        if name not in TEXTS:
+            values = nan
+        elif name not in TEXTS:
             solved &= np.isfinite(values)
+        results[name] = np.broadcast_to(values, (size,))
     return solved, results
 
 
@@ -166,8 +165,7 @@ def _warnings(
 ) -> NDArray[Any]:
     """Return the codes of the warnings of each case, in the service's order."""
     contact = source.normal
-    found = validity.findings(source)
-    flags: dict[str, Any] = {each.code: each.where for each in found}
+    flags: dict[str, Any] = {each.code: each.where for each in validity.findings(source)}
     flags |= {each.code: each.where for each in contact.findings}
     flags["accuracy"] = source.error_estimates > ACCURACY
     flags |= {each.code: each.where for each in yields(query, source)}
@@ -199,9 +197,7 @@ def _solve_alone(spec: Spec, given: Mapping[str, Any]) -> dict[str, Any]:
         failure = problems.to_problem(error)
     except Exception:  # noqa: BLE001 -- an internal error of one case must not end the sweep
         failure = problems.INTERNAL_ERROR
-    listed = problems.document(failure).get("errors", ())
-    message = "; ".join(f"{each['pointer']} {each['detail']}" for each in listed)
-    return {ERROR: message or failure.detail}
+    return {ERROR: "; ".join(map(" ".join, failure.errors)) or failure.detail}
 
 
 def _validated(spec: Spec, given: Mapping[str, Any]) -> Query:

@@ -45,14 +45,10 @@ _SCHEMAS: Final = {
         "type": "string",
         "description": "The table without its heading; of one number, the number alone.",
     },
-    "svg": {
-        "type": "string",
-        "description": "Picture of the values of the response.",
-    },
+    "svg": {"type": "string", "description": "Picture of the values of the response."},
     "png": {"contentMediaType": FORMATS["png"], "description": "The same picture."},
     "pdf": {"contentMediaType": FORMATS["pdf"], "description": "The same picture."},
 }
-_PROBLEM: Final = {"$ref": "#/components/schemas/Problem"}
 
 
 def failures(*types: ProblemType) -> Responses:
@@ -63,7 +59,7 @@ def failures(*types: ProblemType) -> Responses:
     return {
         status: {
             "description": "\n".join(lines),
-            "content": {problems.MEDIA_TYPE: {"schema": _PROBLEM}},
+            "content": {problems.MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}},
         }
         for status, lines in meanings.items()
     }

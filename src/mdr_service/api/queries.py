@@ -7,7 +7,7 @@ from fastapi import APIRouter, Body, Query
 from fastapi.routing import APIRoute
 
 from mdr_service.api.documentation import GET_FAILURES, POST_FAILURES, RESULT
-from mdr_service.api.query_route import QueryRoute
+from mdr_service.api.query_route import QueryRoute, handler
 from mdr_service.batch import BatchAnswer, BatchQuery
 from mdr_service.content_negotiation import ResponseParameters
 from mdr_service.queries import QUERIES, QueryType
@@ -25,7 +25,7 @@ Return the response of `POST` for numbers and at most one range.
 A range `..._from`, `..._to` and `n` stands for a list of `n` numbers."""
 
 
-# These functions declare endpoints for OpenAPI; `QueryRoute` handles the requests.
+# These functions declare endpoints for OpenAPI; `handler` handles the requests.
 
 
 def _post(name: str, path: str, model: Any, **described: Any) -> APIRoute:
@@ -35,15 +35,8 @@ def _post(name: str, path: str, model: Any, **described: Any) -> APIRoute:
         query: Annotated[model, content], form: Annotated[ResponseParameters, Query()]
     ) -> None: ...
 
-    return QueryRoute(
-        path,
-        endpoint,
-        query_name=name,
-        model=model,
-        methods=["POST"],
-        operation_id=name,
-        **described,
-    )
+    handle = handler(name, model)
+    return QueryRoute(path, endpoint, handle, methods=["POST"], operation_id=name, **described)
 
 
 def _get(kind: QueryType, model: Any) -> APIRoute:
@@ -52,9 +45,7 @@ def _get(kind: QueryType, model: Any) -> APIRoute:
     return QueryRoute(
         kind.path,
         get,
-        query_name=kind.name,
-        model=kind.request,
-        parameters=model,
+        handler(kind.name, model),
         methods=["GET"],
         operation_id=f"get_{kind.name}",
         tags=[kind.tag],

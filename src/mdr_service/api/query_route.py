@@ -1,7 +1,7 @@
 """Responses to queries: their format, where they are computed, and the route of their endpoints."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Coroutine, Sequence
 from typing import Any, Final
 
 from fastapi import Request
@@ -17,24 +17,14 @@ from mdr_service.dispatch import is_short, respond
 from mdr_service.middleware import header, hold, read_body
 from mdr_service.query_parameters import Parameters
 from mdr_service.schemas import contacts
-from mdr_service.serializers import FORMATS, JSON, PICTURES
-from mdr_service.serializers.picture import AS_USUAL, Appearance
+from mdr_service.serializers import FORMATS, PICTURES
+from mdr_service.serializers.picture import Appearance
 
+Handler = Callable[[Request], Coroutine[Any, Any, Response]]
 MAX_PARSED_ON_LOOP: Final = 16_384
 """Longest query that is parsed on the event loop [bytes]; the slowest one is rejected in 2 ms."""
 # A response depends only on the query and on the version of the service.
 _CACHED: Final = {"Cache-Control": "max-age=3600", "Vary": "Accept"}
-
-
-def _form_of(request: Request, name: str, given: ResponseParameters) -> tuple[str, Appearance]:
-    """Return media type and appearance of the response, from parameters or from ``Accept``."""
-    accept = header(request.scope, b"accept", "*/*")
-    if given.format is given.size is given.units is None and accept == "*/*":
-        # Most clients send this header, or none.
-        return JSON, AS_USUAL
-    # A batch is JSON only.
-    found = media_type(given.format, accept, ["json"] if name == "batch" else list(FORMATS))
-    return found, appearance(found, given.size, given.units)
 
 
 async def _answer(
@@ -65,53 +55,57 @@ class QueryRoute(APIRoute):
     """
 
     def __init__(
-        self,
-        path: str,
-        endpoint: Callable[..., Any],
-        *,
-        query_name: str,
-        model: type[contacts.Query | BatchQuery],
-        parameters: type[ResponseParameters] = ResponseParameters,
-        **described: Any,
+        self, path: str, endpoint: Callable[..., Any], handler: Handler, **described: Any
     ) -> None:
         """Create the route.
 
         Parameters
         ----------
         path, endpoint : path, and function that declares the endpoint.
-        query_name : name of the query, or ``batch``.
-        model : model of the request.
-        parameters : model of the parameters of the URL, a subclass of `Parameters` if they are the
-            request.
+        handler : result of `handler`.
         described : arguments of `APIRoute` that OpenAPI documents.
         """
-        self.query_name, self.model, self.parameters = query_name, model, parameters
+        self.handler = handler
         super().__init__(path, endpoint, **described)
 
-    def get_route_handler(self) -> Callable[[Request], Any]:
+    def get_route_handler(self) -> Handler:
         """Return the handler of a request."""
-        name, model, parameters = self.query_name, self.model, self.parameters
+        return self.handler
 
-        async def handle(request: Request) -> Response:
-            texts = _url_parameters(request, parameters)
-            try:
-                given = parameters.model_validate(texts)
-            except ValidationError as error:
-                raise problems.from_validation(error, parameters) from None
-            form = _form_of(request, name, given)
-            if isinstance(given, Parameters):
-                with given.pointing():
-                    # A compute process expands ranges, because they can be long.
-                    query: Any = texts if given.n else given.query()
-                    response = await _answer(request, name, query, form, given.members)
-                response.headers.update(_CACHED)
-                return response
-            query = await read_body(request)
-            if len(query) <= MAX_PARSED_ON_LOOP:
-                query = model.model_validate_json(query)
-            return await _answer(request, name, query, form)
 
-        return handle
+def handler(name: str, model: type[contacts.Query | BatchQuery | Parameters]) -> Handler:
+    """Return the handler of the requests of a query.
+
+    Parameters
+    ----------
+    name : name of the query, or ``batch``.
+    model : model of the request, or of the parameters of the URL that form it.
+    """
+    parameters = model if issubclass(model, Parameters) else ResponseParameters
+
+    async def handle(request: Request) -> Response:
+        texts = _url_parameters(request, parameters)
+        try:
+            given = parameters.model_validate(texts)
+        except ValidationError as error:
+            raise problems.from_validation(error, parameters) from None
+        # A batch is JSON only.
+        offered = ["json"] if name == "batch" else FORMATS
+        found = media_type(given.format, header(request.scope, b"accept"), offered)
+        form = found, appearance(found, given.size, given.units)
+        if isinstance(given, Parameters):
+            with given.pointing():
+                # A compute process expands ranges, because they can be long.
+                query: Any = texts if given.n else given.query()
+                response = await _answer(request, name, query, form, given.members)
+            response.headers.update(_CACHED)
+            return response
+        query = await read_body(request)
+        if len(query) <= MAX_PARSED_ON_LOOP:
+            query = model.model_validate_json(query)
+        return await _answer(request, name, query, form)
+
+    return handle
 
 
 def _url_parameters(request: Request, parameters: type[ResponseParameters]) -> dict[str, str]:

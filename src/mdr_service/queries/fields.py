@@ -1,12 +1,12 @@
 """Queries about fields over the radius."""
 
+from collections.abc import Callable
 from typing import Any, Final
 
 import numpy as np
 
 from mdr_core import fields
 from mdr_core import normal as normal_contact
-from mdr_core.elementwise import broadcast
 from mdr_core.errors import InputError
 from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
@@ -30,9 +30,6 @@ from mdr_service.settings import SETTINGS
 
 # These fields have a closed form if the equivalent profile has one.
 _FOUNDATION: Final = frozenset({"foundation_load", "foundation_shear"})
-
-End = tuple[NormalContact, TangentialContact | ContactState | None]
-"""Normal contact, and its tangential contact or state, if there is one."""
 
 
 def solve_stress(query: StressQuery) -> Contact:
@@ -67,13 +64,13 @@ def solve_loaded(query: LoadedQuery) -> Contact:
 
 def stress_result(query: StressQuery, source: Contact) -> Result:
     """Return the requested fields by load and radius."""
-    contact, partial = end = at_end(source)
+    contact, partial = at_end(source)
     radius = np.array(query.radius or fields.grid(partial or contact, query.points))
-    values: Result = {}
-    shape = query.loads, radius.size
-    for name in query.quantities:
-        rows = broadcast(field(name, end, radius), shape)
-        values[name] = np.ascontiguousarray(rows)
+    values = over_radii(
+        query,
+        radius,
+        lambda name: getattr(fields, name)(partial if name in SHEAR_FIELDS else contact, radius),
+    )
     at_singular = may_be_infinite(contact, radius)
     infinite: dict[str, Flags] = dict.fromkeys(("pressure", "shear_stress"), at_singular)
     method = _method(contact, query.quantities)
@@ -105,21 +102,13 @@ def may_be_infinite(contact: NormalContact, radius: Array) -> Flags:
     return np.isin(radius, [0.0, *radii, *np.ravel(contact.contact_radius)])
 
 
-def field(name: str, end: End, radius: Array) -> Array:
-    """Return a field [load][radius] of a contact, or of the end of a load history.
-
-    Parameters
-    ----------
-    name : quantity of a stress query, the name of a function of `mdr_core.fields`.
-    end : result of `at_end`.
-    radius : radii r >= 0 [length], shape (m,).
-    """
-    contact, partial = end
-    source = partial if name in SHEAR_FIELDS else contact
-    return np.atleast_2d(getattr(fields, name)(source, radius))
+def over_radii(query: FieldQuery, radius: Array, field: Callable[[str], Array]) -> Result:
+    """Return each requested field [load][radius], which `field` computes by its name."""
+    shape = query.loads, radius.size
+    return {name: np.broadcast_to(field(name), shape).copy() for name in query.quantities}
 
 
-def at_end(source: Contact) -> End:
+def at_end(source: Contact) -> tuple[NormalContact, TangentialContact | ContactState | None]:
     """Return the normal contact of the fields, and the tangential contact or state, if any."""
     if isinstance(source, TangentialContact):
         return source.normal, source

@@ -46,20 +46,11 @@ def solve_fit(query: FitQuery) -> Fit:
     in_material = known.effective.layer if known else None
     return fit.solve(
         profile(query.profile),
-        indentation_depth=query.indentation_depth,
-        normal_force=query.normal_force,
-        fit=query.fit,
         e_star=known.effective.e_star if known else None,
-        noise=query.noise,
         body_thickness=query.body_thickness or (known.body_thickness if known else None),
-        segment=query.segment,
-        poissons_ratio=query.poissons_ratio,
         indenter=as_body(query.indenter),
         layer=Layer(**vars(query.layer)) if query.has("layer") else in_material,
-        time=query.time,
-        drift=query.drift,
-        drift_rate=query.drift_rate,
-        drift_rate_error=query.drift_rate_error,
+        **query.model_dump(exclude={"profile", "material", "body_thickness", "indenter", "layer"}),
     )
 
 
@@ -73,23 +64,19 @@ def solve_loop(query: LoopQuery) -> LoopFit:
     order of time, of the displacement and on both branches. `error_estimate` is the numerical error
     of the parameters.
     """
-    require_one_of(query, "indentation_depth", "normal_force")
+    loads = "indentation_depth", "normal_force"
+    require_one_of(query, *loads)
     if query.material.model_fields_set & ADHESION:
         raise InputError(("material", "work_of_adhesion"), adhesion.AdhesiveContact.unusable)
-    name = "normal_force" if query.has("normal_force") else "indentation_depth"
     # Bodies always have a shear modulus, which is that of the contact only if it is not fitted.
     is_known = query.material.has("g_star") or "g_star" not in (query.fit or ["g_star"])
     # The load is a member of the request itself.
     with pointing({"load": (), "g_star": ("material", "g_star")}):
-        contact = normal.solve(**body(query), **{name: getattr(query, name)})
+        contact = normal.solve(**body(query), **query.model_dump(include={*loads}))
         return hysteresis.solve(
             contact,
-            tangential_displacement=query.tangential_displacement,
-            tangential_force=query.tangential_force,
-            fit=query.fit,
             g_star=query.material.effective.g_star if is_known else None,
-            friction_coefficient=query.friction_coefficient,
-            rig_compliance=query.rig_compliance,
+            **query.model_dump(exclude={"profile", "material", *loads}),
         )
 
 

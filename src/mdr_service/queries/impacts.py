@@ -1,19 +1,9 @@
 """Queries about oblique impacts."""
 
-from typing import Final
-
 from mdr_core import impact
 from mdr_core.impact import Impact
-from mdr_service.queries.contacts import (
-    Result,
-    body,
-    by_load,
-    friction,
-    response,
-)
+from mdr_service.queries.contacts import Result, body, by_load, friction, response
 from mdr_service.schemas.impacts import ImpactQuery
-
-_MOTION: Final = {"normal_mass", "tangential_mass", "normal_velocity", "tangential_velocity"}
 
 
 def solve_impact(query: ImpactQuery) -> Impact:
@@ -25,8 +15,8 @@ def solve_impact(query: ImpactQuery) -> Impact:
     is below `rtol`; it is an estimate, relative to the larger tangential velocity, before or after
     the impact, and its energy.
     """
-    motion = query.model_dump(include=_MOTION)
-    return impact.solve(**body(query), **friction(query), **motion, rtol=query.rtol)
+    motion = query.model_dump(exclude={"profile", "material", "friction_coefficient"})
+    return impact.solve(**body(query), **friction(query), **motion)
 
 
 def impact_result(query: ImpactQuery, source: Impact) -> Result:

@@ -7,14 +7,7 @@ import numpy as np
 from mdr_core import history as load_history
 from mdr_core.errors import InputError
 from mdr_core.history import LoadHistory
-from mdr_service.queries.contacts import (
-    Result,
-    body,
-    control,
-    friction,
-    require_one_of,
-    response,
-)
+from mdr_service.queries.contacts import Result, body, control, friction, require_one_of, response
 from mdr_service.schemas.fields import LoadedQuery
 from mdr_service.schemas.load_paths import Cycles, HistoryQuery, LoadPath
 from mdr_service.settings import SETTINGS

@@ -15,7 +15,7 @@ from mdr_service.queries.contacts import (
     singular,
     solve_normal,
 )
-from mdr_service.queries.fields import may_be_infinite, require_radii
+from mdr_service.queries.fields import may_be_infinite, over_radii, require_radii
 from mdr_service.schemas.torsion import TorsionQuery
 
 
@@ -40,14 +40,12 @@ def torsion_result(query: TorsionQuery, source: TorsionalContact) -> Result:
     radius = np.array(query.radius or (fields.grid(source, query.points) if query.points else ()))
     if not radius.size:
         return response(query, source, values, infinite=infinite)
-    contact, shape = source.normal, (query.loads, radius.size)
+    contact = source.normal
     field = {
         "pressure": lambda: fields.pressure(contact, radius),
         "shear_stress": lambda: fields.torsional_stress(source, radius),
     }
-    surface: Result = {
-        name: np.broadcast_to(field[name](), shape).copy() for name in query.quantities
-    }
+    surface = over_radii(query, radius, lambda name: field[name]())
     possible: Result = dict.fromkeys(query.quantities, may_be_infinite(contact, radius))
     at_edges = max(fields.edge_error(source, name, radius) for name in query.quantities)
     return response(

@@ -77,10 +77,7 @@ def solve_evolution(query: EvolutionQuery) -> WearEvolution:
             normal_contact.solve(**body(query), **control(query.load)),
             **friction(query),
             **control(query.oscillation),
-            wear_coefficient=query.wear_coefficient,
-            cycles=np.array(query.cycles, dtype=float),
-            resolution=query.resolution,
-            rtol=query.rtol,
+            **query.model_dump(include={"wear_coefficient", "cycles", "resolution", "rtol"}),
         )
 
 

@@ -16,7 +16,6 @@ _pressure = partial(quantity, "pressure")
 _stiffness = partial(quantity, "force/length")
 _energy = partial(quantity, "force*length")
 _velocity = partial(quantity, "length/time")
-_volume = partial(quantity, "length^3")
 _limit = partial(quantity, "as the quantity")
 
 _Field = list[list[float | None]]
@@ -28,9 +27,7 @@ _Regime = Annotated[
 _NULL = "null where infinite, with a warning `singular`"
 _ROUND = "under a given force by the model, of round bodies or a given thickness"
 _UNBOUNDED = "null if wear is unbounded"
-_of_pressure = partial(
-    quantity,
-    "1",
+_PRESSURE_DATA_ERROR = _number(
     "Error of pressures by the points of a table, an estimate relative to the largest pressure; "
     "null where that is infinite",
     default=None,
@@ -120,7 +117,7 @@ class ContactAnswer(SolvedAnswer):
         "Error by the points of a table, an estimate relative to depth and force",
         default=None,
     )
-    pressure_data_error: list[float | None] = _of_pressure()
+    pressure_data_error: list[float | None] = _PRESSURE_DATA_ERROR
 
 
 class NormalAnswer(ContactAnswer):
@@ -316,7 +313,7 @@ class StressAnswer(SolvedAnswer):
         "Tangential load q_x of the equivalent foundation at x = r, by load and radius",
         default=None,
     )
-    pressure_data_error: list[float | None] = _of_pressure()
+    pressure_data_error: list[float | None] = _PRESSURE_DATA_ERROR
 
 
 class LargestStress(Answer):
@@ -385,7 +382,7 @@ class WearAnswer(SolvedAnswer):
         f"Indentation depth d in the limiting state; {_UNBOUNDED}"
     )
     normal_force: list[float] = _force("Normal force F_N in the limiting state")
-    worn_volume: list[float | None] = _volume(f"Worn volume V; {_UNBOUNDED}")
+    worn_volume: list[float | None] = quantity("length^3", f"Worn volume V; {_UNBOUNDED}")
     regime: _Regime
     radius: list[float] = _length("Radius r, requested or chosen", default=None)
     initial_profile: list[float | None] = _length(
@@ -412,7 +409,7 @@ class EvolutionAnswer(SolvedAnswer):
     """
 
     cycles: list[float] = _number("Number of cycles, as requested")
-    worn_volume: list[float] = _volume("Worn volume V")
+    worn_volume: list[float] = quantity("length^3", "Worn volume V")
     indentation_depth: list[float] = _length("Indentation depth d; it grows if F_N is constant")
     normal_force: list[float] = _force("Normal force F_N; it falls if d is constant")
     stick_radius: list[float] = _length("Stick radius c")

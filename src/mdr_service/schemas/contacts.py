@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from functools import cached_property
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
+from typing import Annotated, Any, ClassVar, Final, Literal, NamedTuple, Self
 
 from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
@@ -15,6 +15,7 @@ from mdr_service.schemas.quantities import (
     SignedScalarOrArray,
     Strict,
     left_out,
+    poissons_ratio,
     positive,
     quantity,
 )
@@ -118,7 +119,7 @@ class BodyMaterial(Strict):
     """Elastic body."""
 
     youngs_modulus: float = positive("pressure", "Young's modulus E")
-    poissons_ratio: float = quantity("1", "Poisson's ratio ν", gt=-1, le=0.5)
+    poissons_ratio: float = poissons_ratio("Poisson's ratio ν")
     held: materials.Held = left_out(
         "How a round body is held, on which `model_error` depends: between two "
         "`contacts` (default), on a `stem` or by its equator, `free`, or as a bump of a `block`. "
@@ -141,14 +142,26 @@ def as_body(given: BodyMaterial | str) -> materials.Body | Literal["rigid"]:
     return materials.Body(**given.model_dump(exclude_unset=True))
 
 
-def thickness() -> Any:
-    """Return the optional field of the thickness of a body."""
-    return positive(
-        "length",
-        "Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the "
-        "warning `thin_body`; half-spaces remain the model of the contact",
-        default=None,
-    )
+# Optional fields of several models.
+BODY_THICKNESS: Final = positive(
+    "length",
+    "Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the "
+    "warning `thin_body`; half-spaces remain the model of the contact",
+    default=None,
+)
+LAYER: Final = left_out(
+    "Layer on a rigid base, with which `/v1/normal` (adhesive contacts too), the normal fields of "
+    "`/v1/stress` and `/v1/normal/fit` compute, up to a = 10 h; E* is the modulus of half-spaces "
+    "of the same materials"
+)
+HOLDS_WITHIN: Final = quantity(
+    "1",
+    "Relative change of a result, for which `holds_while` lists the values of what the model "
+    "leaves out: adhesion, slip, thickness, yield and shape",
+    default=None,
+    ge=LEAST_CHANGE,
+    le=MOST_CHANGE,
+)
 
 
 class ElasticLayer(Strict):
@@ -158,21 +171,9 @@ class ElasticLayer(Strict):
     base: materials.Base = Field(
         description="How the layer is held: `bonded` to its base, or sliding on it without friction"
     )
-    poissons_ratio: float = quantity(
-        "1",
+    poissons_ratio: float = poissons_ratio(
         "Poisson's ratio ν of the layer, needed on a bonded base unless the material has it",
         default=None,
-        gt=-1,
-        le=0.5,
-    )
-
-
-def layer() -> Any:
-    """Return the optional field of an elastic layer."""
-    return left_out(
-        "Layer on a rigid base, with which `/v1/normal` (adhesive contacts too), the normal fields "
-        "of `/v1/stress` and `/v1/normal/fit` compute, up to a = 10 h; E* is the modulus of "
-        "half-spaces of the same materials"
     )
 
 
@@ -197,8 +198,8 @@ class Elastic(Strict):
         "`work_of_adhesion`",
         default=None,
     )
-    body_thickness: float = thickness()
-    layer: ElasticLayer = layer()
+    body_thickness: float = BODY_THICKNESS
+    layer: ElasticLayer = LAYER
 
     @property
     def on_base(self) -> materials.Layer | None:
@@ -237,13 +238,10 @@ class Moduli(Elastic):
         "Shear modulus G of a twist, 1/G = 1/G₁ + 1/G₂: half of that of two equal bodies",
         default=None,
     )
-    poissons_ratio: float = quantity(
-        "1",
+    poissons_ratio: float = poissons_ratio(
         "Poisson's ratio ν of the elastic body, needed for stresses beneath its surface; elsewhere "
         "only warnings and `model_error` depend on it, for which 0.3 is assumed",
         default=None,
-        gt=-1,
-        le=0.5,
     )
 
     @cached_property
@@ -272,8 +270,8 @@ Material = Annotated[
 ]
 
 
-# Fields of the loads, normal and tangential.
-_LOADS = ("load", "tangential", "torsion", "oscillation")
+LOADS = ("load", "tangential", "torsion", "oscillation")
+"""Fields of the loads, normal and tangential."""
 
 
 class Axes(NamedTuple):
@@ -306,7 +304,7 @@ class Query(Strict):
     def controls(self) -> dict[str, Choice]:
         """Given loads by the name of their field; empty for a load path."""
         fields = vars(self)
-        return {name: fields[name] for name in _LOADS if fields.get(name)}
+        return {name: fields[name] for name in LOADS if fields.get(name)}
 
     @property
     def loads(self) -> int:
@@ -324,22 +322,10 @@ class Query(Strict):
         return 0
 
 
-def holds_within() -> Any:
-    """Return the optional field of the tolerance of `holds_while`."""
-    return quantity(
-        "1",
-        "Relative change of a result, for which `holds_while` lists the values of what the model "
-        "leaves out: adhesion, slip, thickness, yield and shape",
-        default=None,
-        ge=LEAST_CHANGE,
-        le=MOST_CHANGE,
-    )
-
-
 class NormalQuery(Query):
     """Profile pressed into an elastic half-space without friction."""
 
-    holds_within: float = holds_within()
+    holds_within: float = HOLDS_WITHIN
     load: Load = Field(description="Exactly one control, such as the depth or the force.")
 
 

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Final, Literal, TypeVar
 from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
-from mdr_service.schemas.contacts import Load, Query, Tangential, friction, holds_within
+from mdr_service.schemas.contacts import HOLDS_WITHIN, Load, Query, Tangential, friction
 from mdr_service.schemas.load_paths import History, LoadPath
 from mdr_service.schemas.quantities import Size, left_out, one_of, places, quantity
 from mdr_service.settings import SETTINGS
@@ -102,7 +102,7 @@ _STRESS: Final[dict[str, Any]] = {
 class StressQuery(LoadedQuery, FieldQuery, json_schema_extra=_STRESS):
     """Fields of a contact over the radius, with or without friction."""
 
-    holds_within: float = holds_within()
+    holds_within: float = HOLDS_WITHIN
     quantities: Annotated[list[FieldName], OnceEach] = quantities(
         "shear_stress, slip and foundation_shear need `tangential` or `history`"
     )

@@ -1,28 +1,35 @@
 """Requests about measured curves: force over depth, and loops of the tangential force."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
 from mdr_service.schemas.contacts import (
+    BODY_THICKNESS,
+    LAYER,
     Axes,
     BodyOrRigid,
     ElasticLayer,
     Material,
     Query,
     friction,
-    layer,
-    thickness,
 )
 from mdr_service.schemas.fields import OnceEach
-from mdr_service.schemas.quantities import Signed, Size, left_out, positive, quantity
-from mdr_service.settings import SETTINGS
+from mdr_service.schemas.quantities import (
+    MANY,
+    Signed,
+    Size,
+    left_out,
+    poissons_ratio,
+    positive,
+    quantity,
+)
 
 Fitted = Literal["e_star", "contact_point", "force_offset", "work_of_adhesion"]
 LoopFitted = Literal[
     "g_star", "friction_coefficient", "force_offset", "rig_compliance", "displacement_offset"
 ]
-_CURVE: dict[str, Any] = {"min_length": 3, "max_length": SETTINGS.max_length, "fail_fast": True}
+_CURVE: Final = MANY | {"min_length": 3}
 
 
 class FitQuery(Query):
@@ -48,7 +55,7 @@ class FitQuery(Query):
         "Standard deviation of the forces, by default estimated from the residuals",
         default=None,
     )
-    body_thickness: float = thickness()
+    body_thickness: float = BODY_THICKNESS
     segment: Literal["loading", "unloading"] = left_out(
         "Branch to fit, by the direction of the depth in the order of the lists, without holds; by "
         "default all points."
@@ -68,17 +75,13 @@ class FitQuery(Query):
     drift_rate_error: Size = quantity(
         "length/time", "Its standard deviation, 0 by default", default=None
     )
-    poissons_ratio: float = quantity(
-        "1",
-        "Poisson's ratio ν of the sample, for its `youngs_modulus`",
-        default=None,
-        gt=-1,
-        le=0.5,
+    poissons_ratio: float = poissons_ratio(
+        "Poisson's ratio ν of the sample, for its `youngs_modulus`", default=None
     )
     indenter: BodyOrRigid = Field(
         default="rigid", description="The body that indents the sample, for its `youngs_modulus`."
     )
-    layer: ElasticLayer = layer()
+    layer: ElasticLayer = LAYER
 
 
 class LoopQuery(Query):

@@ -2,12 +2,7 @@
 
 from mdr_core.validation import LOOSEST, TIGHTEST
 from mdr_service.schemas.contacts import Axes, Query, friction
-from mdr_service.schemas.quantities import (
-    ScalarOrArray,
-    SignedScalarOrArray,
-    positive,
-    quantity,
-)
+from mdr_service.schemas.quantities import ScalarOrArray, SignedScalarOrArray, positive, quantity
 
 _VELOCITY = "length/time"
 

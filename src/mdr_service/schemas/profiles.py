@@ -1,7 +1,7 @@
 """Profiles by ``kind``; fields have the names of the parameters of the core."""
 
 from collections.abc import Mapping
-from typing import Annotated, Final, Literal, Self, get_args
+from typing import Annotated, Any, Final, Literal, Self, get_args
 
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -12,6 +12,7 @@ from mdr_service.settings import SETTINGS
 _COEFFICIENT = "length^(1-exponent)"
 # Maximum number of powers: shapes of bodies need fewer, and each power costs a sum.
 _MAX_TERMS = 100
+_POINTS: dict[str, Any] = {"max_length": SETTINGS.max_table_points, "fail_fast": True}
 
 
 class FlatPunchProfile(Strict):
@@ -171,22 +172,16 @@ class TabulatedProfile(Strict):
         "Radii of the points, at least three different ones, in any order, on one or both sides "
         "of the axis; radii may be repeated",
         min_length=3,
-        max_length=SETTINGS.max_table_points,
-        fail_fast=True,
+        **_POINTS,
     )
     f: list[Signed] = quantity(
         "length",
         "Heights of the profile at the points, rising away from the axis, with any offset",
         min_length=3,
-        max_length=SETTINGS.max_table_points,
-        fail_fast=True,
+        **_POINTS,
     )
     breaks: list[Size] = quantity(
-        "length",
-        "Radii where slope or curvature jumps",
-        default=[],
-        max_length=SETTINGS.max_table_points,
-        fail_fast=True,
+        "length", "Radii where slope or curvature jumps", default=[], **_POINTS
     )
     uncertainty: Size | None = quantity(
         "length",

@@ -1,7 +1,7 @@
 """Numbers of a request: strict, finite, bounded, each with its dimension."""
 
 import re
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
@@ -53,11 +53,23 @@ def heading(description: str) -> str:
     return re.split(r"[,;:]| ?\[", description)[0].replace("(r)", "")
 
 
+# Only the first invalid element is reported: a list may have a hundred thousand.
+MANY: Final[dict[str, Any]] = {
+    "min_length": 1,
+    "max_length": SETTINGS.max_length,
+    "fail_fast": True,
+}
+"""Arguments of the field of a list."""
+
+
 def places(meaning: str) -> Any:
     """Return the optional field of a list of radii, coordinates or depths."""
-    # Only the first invalid element is reported: a list may have a hundred thousand.
-    size = {"min_length": 1, "max_length": SETTINGS.max_length, "fail_fast": True}
-    return quantity("length", meaning, default=None, **size)
+    return quantity("length", meaning, default=None, **MANY)
+
+
+def poissons_ratio(meaning: str, **field: Any) -> Any:
+    """Return the field of a Poisson's ratio."""
+    return quantity("1", meaning, gt=-1, le=0.5, **field)
 
 
 def left_out(description: str) -> Any:
@@ -80,18 +92,15 @@ _NotTiny = AfterValidator(_not_tiny)
 _KEYWORD: Final = {"x-smallest-magnitude": SMALLEST}
 Size = Annotated[float, Field(ge=0, le=LARGEST, json_schema_extra=_KEYWORD), _NotTiny]
 Signed = Annotated[float, Field(ge=-LARGEST, le=LARGEST, json_schema_extra=_KEYWORD), _NotTiny]
-# Only the first invalid element is reported: a list may have a hundred thousand.
-_Many = Field(min_length=1, max_length=SETTINGS.max_length, fail_fast=True)
 
 BRANCHES: Final = frozenset({"<number>", "<list>", "<rigid>", "<body>", "<moduli>", "<bodies>"})
 """Branches of unions, which pydantic inserts into the location of an error."""
-# The discriminator restricts errors to the branch to which the value belongs.
-_BY_TYPE: Final = Discriminator(lambda value: "<list>" if isinstance(value, list) else "<number>")
-ScalarOrArray = Annotated[
-    Annotated[Size, Tag("<number>")] | Annotated[list[Size], _Many, Tag("<list>")],
-    _BY_TYPE,
+
+_Number = TypeVar("_Number")
+_OneOrMany = Annotated[
+    Annotated[_Number, Tag("<number>")] | Annotated[list[_Number], Field(**MANY), Tag("<list>")],
+    # The discriminator restricts errors to the branch to which the value belongs.
+    Discriminator(lambda value: "<list>" if isinstance(value, list) else "<number>"),
 ]
-SignedScalarOrArray = Annotated[
-    Annotated[Signed, Tag("<number>")] | Annotated[list[Signed], _Many, Tag("<list>")],
-    _BY_TYPE,
-]
+ScalarOrArray = _OneOrMany[Size]
+SignedScalarOrArray = _OneOrMany[Signed]

@@ -9,8 +9,7 @@ from mdr_core.wear.evolution import COARSEST, DEFAULT_RESOLUTION, FINEST, TIGHTE
 from mdr_service.schemas.contacts import Axes, Choice, friction
 from mdr_service.schemas.fields import FieldQuery, OnceEach, quantities
 from mdr_service.schemas.load_paths import TangentialAmplitude
-from mdr_service.schemas.quantities import ScalarOrArray, Size, positive, quantity
-from mdr_service.settings import SETTINGS
+from mdr_service.schemas.quantities import MANY, ScalarOrArray, Size, positive, quantity
 
 WearField = Literal["initial_profile", "limiting_profile", "worn_depth", "pressure"]
 EvolutionField = Literal["profile", "worn_depth", "pressure"]
@@ -80,9 +79,7 @@ class EvolutionQuery(_FrettingQuery):
     cycles: list[Annotated[float, Field(ge=0, le=1e12)]] = quantity(
         "1",
         "Numbers of cycles of the response, ascending, up to 1e12",
-        min_length=1,
-        max_length=SETTINGS.max_length,
-        fail_fast=True,
+        **MANY,
     )
     resolution: int = quantity(
         "1",

@@ -84,7 +84,7 @@ def panels_of(
         return "", _fitted(query.axes, result)
     if "x" not in result and "radius" not in result:
         return _over_loads(query.axes, result, units)
-    control, loads = next(iter(_varied(query, result).items()), ("", [0.0]))
+    control, loads = _varied(query, result)
     if "radius" in result:
         return _over_positions("radius", control, loads, result, units)
     if result["x"].size == 1 or result["z"].size == 1:
@@ -134,33 +134,22 @@ def _over_loads(
             control, values = axes.curves, unique
             parts = [parts[0][group[parts[0]] == i] for i in range(unique.size)]
     title, chosen = _selection(len(parts))
-    return title, [
-        Panel(
-            axes.x,
-            y,
-            [
-                DrawnCurve(
-                    at[parts[i]], np.asarray(result[y])[parts[i]], _name(control, values[i], units)
-                )
-                for i in chosen
-            ],
-        )
-        for y in axes.y
-    ]
+    named = [(parts[i], _name(control, values[i], units)) for i in chosen]
+    panels = list[Panel | Map]()
+    for y in axes.y:
+        of_all = np.asarray(result[y])
+        curves = [DrawnCurve(at[part], of_all[part], name) for part, name in named]
+        panels.append(Panel(axes.x, y, curves))
+    return title, panels
 
 
 def _fitted(axes: Axes, result: Mapping[str, Any]) -> list[Panel | Map]:
     """Return the panels of a measured curve with the fitted one, and of its residuals."""
-    order = np.argsort(result[axes.x])
-    if axes.in_order:
-        order = np.arange(order.size)
+    order = slice(None) if axes.in_order else np.argsort(result[axes.x])
     at, fit, residual = (np.asarray(result[name])[order] for name in (axes.x, *axes.y))
     measured = DrawnCurve(at, fit + residual, "measured", is_measured=True)
     fitted, left = DrawnCurve(at, fit, "fitted"), DrawnCurve(at, residual, is_measured=True)
-    return [
-        Panel(axes.x, y, curves)
-        for y, curves in zip(axes.y, ([measured, fitted], [left]), strict=True)
-    ]
+    return [Panel(axes.x, axes.y[0], [measured, fitted]), Panel(axes.x, axes.y[1], [left])]
 
 
 def _selection(count: int) -> tuple[str, list[int]]:
@@ -169,13 +158,13 @@ def _selection(count: int) -> tuple[str, list[int]]:
     return (f"{_DRAWN} of {count} loads" if count > _DRAWN else ""), chosen
 
 
-def _varied(query: Any, result: Mapping[str, Any]) -> dict[str, list[float]]:
-    """Return the loads that tell curves apart, by name, first those of the most values."""
+def _varied(query: Any, result: Mapping[str, Any]) -> tuple[str, list[float]]:
+    """Return the name and values of the loads that tell curves apart, those of the most values."""
     if query.axes.x == "cycles":
-        return {"cycles": result["cycles"]}
-    lists = {each.control: each.value for each in query.controls.values() if each.count > 1}
-    found = sorted(lists.items(), key=lambda each: -len(set(each[1])))
-    return {name: values for name, values in found if len(set(values)) > 1}
+        return "cycles", result["cycles"]
+    lists = [(each.control, each.value) for each in query.controls.values() if each.count > 1]
+    name, values = max(lists, key=lambda each: len(set(each[1])), default=("", [0.0]))
+    return (name, values) if len(set(values)) > 1 else ("", [0.0])
 
 
 def _name(control: str, value: float, units: Units | None) -> str:
