@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import cache, lru_cache, partial
-from math import comb, inf
+from math import comb, inf, nan
 from typing import Final
 
 import numpy as np
@@ -10,7 +10,7 @@ from scipy.interpolate import BPoly
 
 from mdr_core.abel.annulus import Annulus, whole
 from mdr_core.doubles import ADJACENT
-from mdr_core.elementwise import full, in_blocks, is_number, number, some, where
+from mdr_core.elementwise import every, full, in_blocks, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.inversion import MAX_STEPS, invert
 from mdr_core.profiles import Paraboloid, Power, Profile, RoundedPunch, Tabulated
@@ -62,34 +62,41 @@ def largest_stress(
     slip : widths a - c of the slip annulus and stick radii c in the contact coordinate; None for
         c = 0.
     """
-    if isinstance(profile, Paraboloid):
-        root = edge if slip is None else np.sqrt(slip[0] * (edge + slip[1]))
-        return 2 * root / (np.pi * profile.radius)
-    shape, infinite = loaded.shape, _infinite(profile, edge, loaded, slip)
-    if isinstance(profile, Power) and slip is None:
-        # Contacts are similar: the stress over the slope g' is a constant of the exponent.
-        exponent = where(profile.exponent > 1, number(1.0) * profile.exponent, 2.0)
-        stress = np.vectorize(_over_slope, otypes=[float])(exponent)[()] * profile.dg(edge)
-        return where(infinite, inf, where(loaded, stress, 0.0))
-    unknown, result = loaded & ~infinite, where(infinite, inf, full(0.0, edge))
-    if isinstance(profile, RoundedPunch) and slip is None:
-        on_curve = _on_curve(profile, edge)
-        known = unknown & np.isfinite(on_curve)
-        unknown, result = unknown & ~known, where(known, on_curve, result)
-    if not some(unknown):
-        return result
-    if is_number(edge):
-        return _search(profile, *map(np.atleast_1d, (edge, *(slip or ()))))[0]
-    finite, result = np.atleast_1d(unknown), np.atleast_1d(result)
-    parts = [np.broadcast_to(part, finite.shape) for part in (edge, *(slip or ()))]
+    if slip and isinstance(profile, Paraboloid):
+        return 2 * np.sqrt(slip[0] * (edge + slip[1])) / (np.pi * profile.radius)
+    infinite, known = _infinite(profile, edge, loaded, slip), full(nan, edge)
+    if not slip:
+        falls = profile.falls_from_axis(edge)
+        if every(falls):
+            return where(loaded, profile.axis_stress(edge), 0.0)
+        known = _of_similar(profile, edge)
+        if some(falls):
+            known = where(falls, profile.axis_stress(edge), known)
+    result = np.atleast_1d(where(infinite, inf, where(loaded, known, 0.0)))
+    shape, unknown = loaded.shape, np.isnan(result)
+    parts = [np.broadcast_to(part, result.shape) for part in (edge, *(slip or ()))]
     if not profile.swept:
-        result[finite] = _search(profile, *(part[finite] for part in parts))
-        return result.reshape(shape)
+        result[unknown] = _search(profile, *(part[unknown] for part in parts))
+        return result.reshape(shape)[()]
     named = {name: np.broadcast_to(value, shape) for name, value in profile.parameters.items()}
-    for place in zip(*np.nonzero(finite), strict=True):
+    for place in zip(*np.nonzero(unknown), strict=True):
         one = profile.with_parameters({name: float(value[place]) for name, value in named.items()})
         result[place] = _search(one, *(part[place][None] for part in parts))[0]
-    return result
+    return result.reshape(shape)[()]
+
+
+def _of_similar(profile: Profile, edge: Array) -> Array:
+    """Largest pressure over E* of kinds whose contacts are similar [1], NaN where unknown."""
+    if isinstance(profile, Power):
+        # The stress over the slope g' is a constant of the exponent.
+        exponent = where(profile.exponent > 1, number(1.0) * profile.exponent, 2.0)
+        return np.vectorize(_over_slope, otypes=[float])(exponent)[()] * profile.dg(edge)
+    if isinstance(profile, RoundedPunch):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            _, s = profile.flank(edge)
+            height = _curve()(np.log(s / profile.flat_radius))[()]
+            return height * profile.depth(edge) / s
+    return full(nan, edge)
 
 
 def pressure_and_slope(profile: Profile, edge: Array) -> tuple[Array, Array]:
@@ -168,14 +175,6 @@ def _infinite(
             begins = where(b == profile.first_radius, slip[1] <= 0, begins)
         infinite = infinite | (loaded & begins & (b <= a))
     return infinite
-
-
-def _on_curve(profile: RoundedPunch, edge: Array) -> Array:
-    """The largest pressure over E* under rounded punches [1], NaN beyond the curve."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        _, s = profile.flank(edge)
-        height = _curve()(np.log(s / profile.flat_radius))[()]
-        return height * profile.depth(edge) / s
 
 
 @lru_cache(maxsize=1024)

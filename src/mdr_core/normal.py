@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import half_space, validity
 from mdr_core.doubles import ADJACENT, LARGEST, ROUNDING
-from mdr_core.elementwise import broadcast, common_shape, every, some, where
+from mdr_core.elementwise import broadcast, common_shape, where
 from mdr_core.equivalent_1d import coordinate_from_radius, load_and_slope
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import coordinate_from_pressure, largest_stress, pressure_and_slope
@@ -23,7 +23,6 @@ from mdr_core.validation import (
     extremes,
     only_one,
     require_not_negative,
-    require_positive,
     require_representable,
     require_type,
 )
@@ -87,8 +86,6 @@ class NormalContact(validity.ResultsOverLoads):
     def mean_pressure(self) -> Array:
         """F_N / (pi a^2) [pressure]; at zero load its limit, which may be infinite."""
         area = np.pi * (self.contact_radius * self.contact_radius)
-        if extremes(area)[0] > 0:
-            return self.normal_force / area
         limit = np.multiply(self.e_star, self.profile.tip_pressure)
         return where(area > 0, self.normal_force / where(area > 0, area, 1.0), limit)
 
@@ -98,14 +95,7 @@ class NormalContact(validity.ResultsOverLoads):
 
         It is infinite at a sharp tip, at a slope discontinuity and at the edge of a flat punch.
         """
-        profile, edge, loaded = self.profile, self.coordinate, self.loaded
-        falls = profile.falls_from_axis(edge)
-        if not some(falls):
-            return self.e_star * largest_stress(profile, edge, loaded)
-        stress = where(loaded, profile.axis_stress(edge), 0.0)
-        if not every(falls):
-            stress = where(falls, stress, largest_stress(profile, edge, loaded & ~falls))
-        return self.e_star * stress
+        return self.e_star * largest_stress(self.profile, self.coordinate, self.loaded)
 
     @cached_property
     def half_space_errors(self) -> half_space.Errors:
@@ -286,12 +276,7 @@ def solve(
     """
     require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     material = e_star if isinstance(e_star, Material) else None
-    # A plain number, the most frequent input, is checked with the load.
-    modulus: Parameter = (
-        e_star
-        if isinstance(e_star, float)
-        else as_positive(("material", "e_star"), normal_modulus(e_star))
-    )
+    modulus: Parameter = as_positive(("material", "e_star"), normal_modulus(e_star))
     loads = (indentation_depth, normal_force, contact_radius, maximum_pressure)
     names = (*CONTROLS, "maximum_pressure")
     name, load = only_one(("load",), dict(zip(names, loads, strict=True)))
@@ -320,7 +305,6 @@ def shape_of_loads(
 
 def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> Array:
     """Contact coordinate of the edge under a load, after a check of input and results."""
-    require_positive(("material", "e_star"), e_star)
     with np.errstate(all="ignore"):
         if name == "contact_radius":
             coordinate = coordinate_from_radius(profile, load)

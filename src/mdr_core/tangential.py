@@ -87,17 +87,14 @@ class TangentialContact(validity.ResultsOverLoads):
     def tangential_force(self) -> Array:
         """F_x = mu [F_N(a) - F_N(c)] [force]. Source: mdr-5, Eq. (5.19)."""
         partial = self._over_annulus(equivalent_1d.force_step, 1.0)
-        if some(self.full_slip):
-            partial = where(self.full_slip, self.limiting_force, partial)
-        return self._signed(partial)
+        return self._signed(where(self.full_slip, self.limiting_force, partial))
 
     @cached_property
     def tangential_displacement(self) -> Array:
         """u_x = mu (E*/G*) [d(a) - d(c)] [length]. Source: mdr-5, Eqs. (5.20), (5.33)."""
         partial = self._over_annulus(equivalent_1d.depth_step, self.g_star)
-        if some(self.full_slip):
-            partial = where(self.full_slip, self._full_slip_displacement, partial) + self.excess
-        return self._signed(partial)
+        beyond = self._full_slip_displacement + self.excess
+        return self._signed(where(self.full_slip, beyond, partial))
 
     def _over_annulus(self, step: _Step, divisor: Parameter) -> Array:
         """Step of depth or force over the annulus, times mu E*/divisor."""
@@ -117,9 +114,8 @@ class TangentialContact(validity.ResultsOverLoads):
     @cached_property
     def slip_width(self) -> Array:
         """a - c [length]."""
-        a = self.normal.contact_radius
         width = 0 * self.width if self.normal.profile.is_flat_punch else self.width
-        return where(self.full_slip, a, width) if some(self.full_slip) else width
+        return where(self.full_slip, self.normal.contact_radius, width)
 
     @cached_property
     def stick_radius(self) -> Array:
@@ -130,7 +126,7 @@ class TangentialContact(validity.ResultsOverLoads):
             # Rounding errors may lead to c > a. Without slip c and a are bit-identical.
             a = self.normal.contact_radius
             c = where(self.width > 0, np.minimum(c, a), a)
-        return where(self.full_slip, 0.0, c) if some(self.full_slip) else c
+        return where(self.full_slip, 0.0, c)
 
     @cached_property
     def tangential_stiffness(self) -> Array:
