@@ -9,7 +9,6 @@ Source: notes, §15.
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from math import inf, pi, sqrt
 from typing import Final
 
@@ -210,19 +209,12 @@ class Model:
         def values(x: Array) -> Parameters:
             return start | dict(zip(self.fit, (x * unit).tolist(), strict=True))
 
-        # Residuals and slopes are asked for in turn at one place.
-        @lru_cache(maxsize=1)
-        def evaluated(place: bytes) -> tuple[Array, Array]:
-            forces, slopes = self.at(values(np.frombuffer(place)))
+        def residual_and_slopes(x: Array) -> tuple[Array, Array]:
+            forces, slopes = self.at(values(x))
             return (forces - self.force) / size, slopes * unit / size
 
         with suppress(ValueError, ZeroDivisionError, np.linalg.LinAlgError):
-            found = minimum(
-                lambda x: evaluated(x.tobytes())[0],
-                first,
-                lambda x: evaluated(x.tobytes())[1],
-                bounds,
-            )
+            found = minimum(residual_and_slopes, first, bounds)
             if np.isfinite(found).all():
                 return values(found)
         detail = "does not determine the parameters: measure deeper, or fit fewer of them"

@@ -253,12 +253,11 @@ class _Loop:
             values[self.free] = free
             return values
 
-        found = minimum(
-            lambda free: self.forces(whole(free)) - measured,
-            start[self.free],
-            lambda free: self.slopes(whole(free)),
-            bounds[:, self.free],
-        )
+        def model(free: Array) -> tuple[Array, Array]:
+            x = whole(free)
+            return self.forces(x) - measured, self.slopes(x)
+
+        found = minimum(model, start[self.free], bounds[:, self.free])
         x = whole(found)
         residual = measured - self.forces(x)
         scatter = float(np.sqrt(residual @ residual / (residual.size - len(self.fit))))
