@@ -252,16 +252,12 @@ class AdhesiveContact(NormalContact):
         at the edge of a flat at which g' is infinite.
         """
         punch, stable = self.reference.normal_stiffness, self._excess("indentation_depth")
-        if self.profile.is_flat_punch:
-            return punch
         excess = self.curve.excess(_SHARES["normal_force"], self.coordinate)
         with np.errstate(divide="ignore", invalid="ignore"):
             return where(stable < inf, punch * excess / stable, punch)
 
     def _excess(self, name: str) -> Array:
         """Excess of a g'/Delta_l over its value at pull-off; infinite under a flat punch [1]."""
-        if self.profile.is_flat_punch:
-            return full(inf, self.coordinate)
         excess = self.curve.excess(_SHARES[name], self.coordinate)
         return where(excess > self.profile.steepness * ROUNDING, excess, 0.0)
 
@@ -319,8 +315,6 @@ class AdhesiveContact(NormalContact):
     def _slope_error(self) -> Array:
         """Relative error of g'(a) by the error of the contact radius, large next to a flat [1]."""
         profile, edge = self.profile, self.coordinate
-        if profile.is_flat_punch:
-            return full(0.0, edge)
         size = edge if self.control == "contact_radius" else self.contact_radius
         moved = np.minimum(self.edge_errors * size, edge / 2)
         with np.errstate(all="ignore"):
