@@ -74,12 +74,6 @@ def piecewise(
     return np.where(first, below(np.minimum(place, start)), beyond(np.maximum(place, start)))
 
 
-def common_shape(*values: Any) -> tuple[int, ...]:
-    """Return the shape to which numbers and arrays broadcast, or raise ValueError."""
-    shapes = {getattr(value, "shape", ()) for value in values}
-    return shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
-
-
 def broadcast(value: Any, shape: tuple[int, ...]) -> Any:
     """Broadcast a value to a shape; a shape without dimensions gives a number."""
     return value if getattr(value, "shape", ()) == shape else np.broadcast_to(value, shape)

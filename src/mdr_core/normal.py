@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 
 from mdr_core import half_space, validity
 from mdr_core.doubles import ADJACENT, LARGEST, ROUNDING
-from mdr_core.elementwise import broadcast, common_shape, where
+from mdr_core.elementwise import broadcast, where
 from mdr_core.equivalent_1d import coordinate_from_radius, load_and_slope
-from mdr_core.errors import InputError, Notice
+from mdr_core.errors import Notice
 from mdr_core.extrema import coordinate_from_pressure, largest_stress, pressure_and_slope
 from mdr_core.materials import Material, normal_modulus
 from mdr_core.profiles import Profile, Tabulated
@@ -20,6 +20,7 @@ from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import (
     as_positive,
+    common_shape,
     extremes,
     only_one,
     require_not_negative,
@@ -280,27 +281,13 @@ def solve(
     loads = (indentation_depth, normal_force, contact_radius, maximum_pressure)
     names = (*CONTROLS, "maximum_pressure")
     name, load = only_one(("load",), dict(zip(names, loads, strict=True)))
-    spread = _over_cases(profile, modulus, name, load)
+    cases = modulus, *profile.parameters.values()
+    spread = broadcast(load, common_shape(("load", name), load, "the parameters", *cases))
     coordinate = _coordinate(name, profile, modulus, spread)
     contact = NormalContact(profile, modulus, coordinate, name, material)
     # The prescribed load is returned bit-identical.
     vars(contact)[name] = spread
     return contact
-
-
-def shape_of_loads(
-    contact: NormalContact, path: tuple[str, str], given: Array, *parameters: Parameter
-) -> tuple[int, ...]:
-    """Return the shape of the loads and parameters that are added to a normal contact.
-
-    Raises InputError at the path if they do not agree with the normal loads.
-    """
-    try:
-        return common_shape(given, contact.coordinate, *parameters)
-    except ValueError:
-        normal = contact.coordinate.shape
-        detail = f"the shape {given.shape} does not agree with the normal loads, {normal}"
-        raise InputError(path, detail) from None
 
 
 def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> Array:
@@ -330,22 +317,3 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
         loaded = coordinate > 0 if name == "contact_radius" else load > 0
         require_representable(("load", name), loaded, *results)
     return coordinate
-
-
-def _over_cases(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array:
-    """Load of every case of a sweep; shapes that do not agree are rejected."""
-    parts = [
-        part for part in (e_star, *profile.parameters.values()) if isinstance(part, np.ndarray)
-    ]
-    if not parts:
-        return load
-    try:
-        shape = common_shape(load, *parts)
-    except ValueError:
-        shapes = ", ".join(str(part.shape) for part in parts)
-        raise InputError(
-            ("load", name),
-            f"the shape {load.shape} of the load does not agree with the shapes of the parameters, "
-            f"{shapes}",
-        ) from None
-    return broadcast(load, shape)

@@ -14,11 +14,11 @@ from mdr_core.elementwise import broadcast, is_number, some, where
 from mdr_core.extrema import largest_stress
 from mdr_core.interval_moments import interval_moments
 from mdr_core.materials import Material, shear_modulus
-from mdr_core.normal import NormalContact, shape_of_loads
+from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validation import as_positive, only_one, require_type
+from mdr_core.validation import as_positive, common_shape, only_one, require_type
 
 # Relative rounding error of the full-slip displacement mu (E*/G*) d, which has three products.
 _LIMIT_ERROR: Final = 1.5 * EPS
@@ -316,7 +316,8 @@ def solve(
     loads = (tangential_force, tangential_displacement, stick_radius)
     name, given = only_one(("tangential",), dict(zip(CONTROLS, loads, strict=True)))
     parameters = (modulus, friction_coefficient)
-    shape = shape_of_loads(contact, ("tangential", name), given, *parameters)
+    others = "the normal loads", contact.coordinate
+    shape = common_shape(("tangential", name), given, *others, *parameters)
     edge, width, sign, full_slip, excess = stick_zone.solve(contact, *parameters, name, given)
     edge, width = broadcast(edge, shape), broadcast(width, shape)
     result = TangentialContact(
