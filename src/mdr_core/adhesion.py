@@ -315,6 +315,8 @@ class AdhesiveContact(NormalContact):
     def _slope_error(self) -> Array:
         """Relative error of g'(a) by the error of the contact radius, large next to a flat [1]."""
         profile, edge = self.profile, self.coordinate
+        if profile.is_flat_punch:
+            return full(0.0, edge)
         size = edge if self.control == "contact_radius" else self.contact_radius
         moved = np.minimum(self.edge_errors * size, edge / 2)
         with np.errstate(all="ignore"):
