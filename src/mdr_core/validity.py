@@ -16,7 +16,7 @@ from typing import Any, ClassVar, Final, NamedTuple, Protocol
 import numpy as np
 
 from mdr_core import half_space
-from mdr_core.elementwise import every, full, number, some, where
+from mdr_core.elementwise import full, number, some, where
 from mdr_core.errors import Notice, Remedy
 from mdr_core.half_space import ASSUMED_RATIO, LoadedContact
 from mdr_core.materials import Layer
@@ -446,8 +446,6 @@ def _infinite(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool
     found = contact.contact_radius < 0
     for b in contact.profile.infinite_pressure_radii:
         found = found | (contact.loaded & (b <= contact.contact_radius) & counts(b))
-        if every(found):
-            break
     return found
 
 

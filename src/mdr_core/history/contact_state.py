@@ -59,7 +59,6 @@ class LoadPointResults(Results):
         "tangential_energy",
         "dissipation",
     )
-    about: ClassVar[tuple[str, ...]] = ()
 
     @property
     def displacement_ratio(self) -> Any:

@@ -88,7 +88,6 @@ def solve(
 def _coordinate(profile: Profile, layer: Layer, name: str, load: Array) -> Array:
     """Contact coordinate under loads, forces over E*."""
     validation.require_not_negative(("load", name), load)
-    validation.require_finite(("load", name), load)
     of_force = name == "normal_force"
     if name == "contact_radius":
         return coordinate_from_radius(profile, load)
