@@ -30,7 +30,7 @@ from mdr_core.elementwise import full, number, some, where
 from mdr_core.equivalent_1d import coordinate_from_radius
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import LEAST_GAP, largest_with
-from mdr_core.materials import Material, normal_modulus
+from mdr_core.materials import UNKNOWN, Material, normal_modulus
 from mdr_core.normal import CONTROLS, NormalContact
 from mdr_core.profiles import FlatPunch, Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
@@ -399,7 +399,7 @@ def solve(
     """
     validation.require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     validation.require_single_profile(profile.swept)
-    material = e_star if isinstance(e_star, Material) else None
+    material = e_star if isinstance(e_star, Material) else UNKNOWN
     modulus: Any = normal_modulus(e_star)
     for field, value in {"e_star": modulus, "work_of_adhesion": work_of_adhesion}.items():
         validation.require_single_positive(("material", field), value)
@@ -412,7 +412,7 @@ def solve(
 def on_curve(
     curve: Curve,
     modulus: float,
-    material: Material | None,
+    material: Material,
     loads: Mapping[str, ArrayLike | None],
     range_of_adhesion: float,
 ) -> AdhesiveContact:
@@ -422,7 +422,7 @@ def on_curve(
     ----------
     curve : the states of a profile with a work of adhesion, on a half-space or a layer.
     modulus : E* [pressure].
-    material : effective moduli, None where only E* is given.
+    material : effective moduli, `UNKNOWN` where only E* is given.
     loads : the controls by name, of which exactly one is given.
     range_of_adhesion : distance over which the surfaces attract [length], 0 where it is not given.
     """

@@ -99,6 +99,8 @@ class Material:
                 require_positive(("material", name), value)
 
 
+UNKNOWN: Final = Material(1.0)
+"""Bodies of which nothing is known: the contact has their E*."""
 # One number, or an array over the cases of a sweep.
 _Number = TypeVar("_Number", bound=Parameter)
 

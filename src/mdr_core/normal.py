@@ -13,7 +13,7 @@ from mdr_core.elementwise import broadcast, where
 from mdr_core.equivalent_1d import coordinate_from_radius, load_and_slope
 from mdr_core.errors import Notice
 from mdr_core.extrema import coordinate_from_pressure, largest_stress, pressure_and_slope
-from mdr_core.materials import Material, normal_modulus
+from mdr_core.materials import UNKNOWN, Material, normal_modulus
 from mdr_core.profiles import Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.quadrature import composite_rule
@@ -57,8 +57,8 @@ class NormalContact(validity.ResultsOverLoads):
     """Contact edge in the contact coordinate of the profile."""
     control: str = "contact_radius"
     """Name of the prescribed load, which is exact."""
-    material: Material | None = None
-    """Material on which the warnings depend; None where only E* is known."""
+    material: Material = UNKNOWN
+    """Material on which the warnings depend; `UNKNOWN` where only E* is known."""
     quantities: ClassVar[tuple[str, ...]] = NORMAL_QUANTITIES
     g_star: ClassVar[None] = None
     """A contact without friction has no shear modulus."""
@@ -223,7 +223,7 @@ class NormalContact(validity.ResultsOverLoads):
             validity.Finding("singular", np.isinf(self.mean_pressure), lambda: sharp),
             validity.infinite_maximum(self),
         ]
-        if self.material is not None and self.material.layer is not None:
+        if self.material.layer is not None:
             found.append(validity.layer_strain(self.indentation_depth, self.material.layer))
         if isinstance(self.profile, Tabulated):
             of_table = [validity.tip(self, self.profile), validity.smoothed(self, self.profile)]
@@ -276,7 +276,7 @@ def solve(
     [9.0856e-05, 0.000181712]
     """
     require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
-    material = e_star if isinstance(e_star, Material) else None
+    material = e_star if isinstance(e_star, Material) else UNKNOWN
     modulus: Parameter = as_positive(("material", "e_star"), normal_modulus(e_star))
     loads = (indentation_depth, normal_force, contact_radius, maximum_pressure)
     names = (*CONTROLS, "maximum_pressure")

@@ -100,8 +100,8 @@ def of_contact(contact: NormalContact, tolerance: float) -> tuple[Threshold, ...
     ]
     depth = "indentation_depth"
     if isinstance(profile, Paraboloid):
-        ratios = () if contact.material is None else contact.material.poissons_ratios
-        least = 2 * _shear_below(min(ratios, default=ASSUMED_RATIO)) * contact.maximum_pressure
+        nu = min(contact.material.poissons_ratios, default=ASSUMED_RATIO)
+        least = 2 * _shear_below(nu) * contact.maximum_pressure
         found.append(Threshold("yield", "yield_strength", least, depth, "elastic_plastic"))
     if isinstance(profile, Sphere):
         radius = full(_like_paraboloid(tolerance), a) * profile.radius

@@ -129,7 +129,7 @@ class TorsionalContact(validity.ResultsOverLoads):
     @property
     def g_star(self) -> float | None:
         """G* of the bodies [pressure], from which the warnings detect dissimilar bodies."""
-        return None if self.normal.material is None else self.normal.material.g_star
+        return self.normal.material.g_star
 
     @cached_property
     def model_error(self) -> Array:
