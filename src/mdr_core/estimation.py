@@ -3,7 +3,7 @@
 Source: notes, §15.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar, Self
@@ -104,6 +104,22 @@ class Precision:
         step = np.abs(self.inverse @ (self.q.T @ residual)).max()
         condition = np.linalg.norm(self.inverse, 2)
         return float(condition * relative + 2 * step / np.linalg.norm(curve))
+
+
+def require_fitted(
+    fit: Sequence[str], parameters: Sequence[str], known: Mapping[str, float | None]
+) -> None:
+    """Raise InputError unless parameters are fitted, each once, and others are known.
+
+    Parameters: names of the fitted ones, of all, and values of some of them, which are either
+    fitted or known.
+    """
+    if not fit or len({*fit} & {*parameters}) < len(fit):
+        raise InputError(("fit",), f"must hold some of {', '.join(parameters)}, each once")
+    for name, value in known.items():
+        if (name in fit) == (value is not None):
+            detail = "is fitted: leave it out" if name in fit else "is needed unless it is fitted"
+            raise InputError((name,), detail)
 
 
 def minimum(model: Callable[[Array], tuple[Array, Array]], first: Array, bounds: Array) -> Array:

@@ -67,7 +67,7 @@ class Model:
         """Largest depth on the profile, or of the curve on a layer [length]."""
         if self.on_layer is not None:
             return self.on_layer.deepest
-        return float((self.profile.largest_loads or (inf,))[0])
+        return float(self.profile.largest_loads[0])
 
     @property
     def reach(self) -> float:
@@ -88,7 +88,7 @@ class Model:
     def require_points(self, touching: int) -> None:
         """Raise InputError unless more points are in contact than parameters are fitted."""
         if touching <= len(self.fit):
-            ends = (self.profile.largest_loads or (inf,))[0]
+            ends = self.profile.largest_loads[0]
             remedy = "measure deeper, or more points"
             if ends < np.ptp(self.depth):
                 remedy = f"the profile ends at the depth {ends:.3g}: give a longer one"

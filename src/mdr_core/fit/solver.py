@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from mdr_core import curve_segments
 from mdr_core.curve_segments import Drift, phases
 from mdr_core.errors import InputError
+from mdr_core.estimation import require_fitted
 from mdr_core.fit import adhesive
 from mdr_core.fit.model import PARAMETERS, Model
 from mdr_core.fit.result import Fit, result
@@ -120,22 +121,14 @@ def solve(
     known_drift = drift, drift_rate, drift_rate_error
     corrected, subtracted = _without_drift(curve, time, segment, *known_drift)
     depth, force, drift_error = _branch(corrected, segment)
-    unknown = [name for name in fit if name not in PARAMETERS]
-    if unknown or not fit or len(set(fit)) < len(fit):
-        raise InputError(("fit",), f"must hold some of {', '.join(PARAMETERS)}, each once")
-    if ("e_star" in fit) == (e_star is not None):
-        reason = (
-            "is fitted: leave it out" if e_star is not None else "is needed unless it is fitted"
-        )
-        raise InputError(("e_star",), reason)
+    require_fitted(fit, PARAMETERS, {"e_star": e_star})
     for name, value in (("e_star", e_star), ("noise", noise)):
         if value is not None:
             require_single_positive((name,), value)
     if "work_of_adhesion" in fit and profile.is_flat_punch:
         detail = "holds work_of_adhesion, on which only the pull-off of a flat punch depends"
         raise InputError(("fit",), detail)
-    deepest = profile.largest_loads
-    if deepest is not None and "contact_point" not in fit and depth.max() > deepest[0]:
+    if "contact_point" not in fit and depth.max() > profile.largest_loads[0]:
         place = ("indentation_depth", int(depth.argmax()))
         raise InputError(place, "lies beyond the end of the profile: give a longer one")
     if layer is not None and layer.poissons_ratio is None:

@@ -94,8 +94,8 @@ def _coordinate(profile: Profile, layer: Layer, name: str, load: Array) -> Array
     if profile.is_flat_punch:
         return load / states(profile, layer, np.ones(1)).stiffness[0] if of_force else load
     end = largest_coordinate(profile, layer)
-    most = (profile.largest_loads or (np.inf, np.inf))[of_force]
-    start = normal.solve(profile, 1.0, **{name: np.minimum(load, most)}).coordinate
+    within = np.minimum(load, profile.largest_loads[of_force])
+    start = normal.solve(profile, 1.0, **{name: within}).coordinate
     if np.max(start) * _DEEPER > end:
         last = states(profile, layer, np.atleast_1d(end))
         beyond = np.asarray(load > (last.force if of_force else last.depth)[0])

@@ -225,10 +225,10 @@ class Profile(ABC):
         return self.contact_radius(number(0.0))
 
     @cached_property
-    def largest_loads(self) -> tuple[Parameter, Parameter] | None:
-        """Depth [length] and F_N/E* [length^2] at the end of the domain; None without an end."""
+    def largest_loads(self) -> tuple[Parameter, Parameter]:
+        """Depth [length] and F_N/E* [length^2] at the end of the domain; infinite without one."""
         end = number(1.0) * self.domain
-        return None if some(end == inf) else (self.depth(end), self.reduced_force(end))
+        return (inf, inf) if some(end == inf) else (self.depth(end), self.reduced_force(end))
 
     @property
     def scale(self) -> Parameter:
@@ -299,16 +299,12 @@ class Profile(ABC):
 
     def coordinate_from_depth(self, depth: Array) -> Array:
         """Inverse of `depth`, iterated where it has no closed form."""
-        if self.largest_loads is not None:
-            beyond = depth > self.largest_loads[0]
-            require_inside(("load", "indentation_depth"), beyond, self)
+        require_inside(("load", "indentation_depth"), depth > self.largest_loads[0], self)
         return self._root(self.depth, self.depth_slope, depth)
 
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
         """Inverse of `reduced_force`, iterated where it has no closed form."""
-        if self.largest_loads is not None:
-            beyond = reduced_force > self.largest_loads[1]
-            require_inside(("load", "normal_force"), beyond, self)
+        require_inside(("load", "normal_force"), reduced_force > self.largest_loads[1], self)
         return self._root(self.reduced_force, self.force_slope, reduced_force)
 
     def _root(self, load: Function, slope: Function, target: Array) -> Array:
