@@ -232,14 +232,11 @@ class AdhesiveContact(NormalContact):
     @cached_property
     def maximum_pressure(self) -> Array:
         """Largest pressure in the contact [pressure]; the tension at its edge is infinite."""
-        a, rim = (
-            np.ravel(self.contact_radius),
-            np.ravel(self.retraction / (pi * self.contact_radius)),
-        )
+        a, retraction = map(np.ravel, (self.contact_radius, self.retraction))
 
         def tension(load: Indices, r: Array) -> Array:
             square = np.maximum((a[load] - r) * (a[load] + r), LEAST_GAP * a[load] ** 2)
-            return self.curve.correction(self, load, r) - rim[load] * a[load] / np.sqrt(square)
+            return self.curve.correction(self, load, r) - retraction[load] / (pi * np.sqrt(square))
 
         largest = largest_with(self.profile, self.coordinate, self.loaded, tension)
         return self.e_star * largest

@@ -118,9 +118,7 @@ def _of_round_bodies(contact: LoadedContact, beta: float) -> Errors:
         radius = 0.015 * mean + 0.1 * beta * largest + 0.05 * steepest**2
         pressure = 0.04 * mean + 0.3 * beta * largest + 0.4 * common**2
         found.append((*force, steepest, radius, pressure))
-    *parts, steepest, radius, pressure = (
-        found[0] if len(found) == 1 else np.maximum(found[0], found[1])
-    )
+    *parts, steepest, radius, pressure = np.max(found, axis=0)
     return Errors(tuple(parts), steepest, radius, pressure)
 
 

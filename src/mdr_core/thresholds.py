@@ -128,4 +128,4 @@ def _like_paraboloid(tolerance: float) -> float:
         force = (1 + x * x) * atanh(x) - x
         return depth / (3 * force / 4) ** (2 / 3) - 1 - tolerance
 
-    return float(brentq(excess, 1e-2 if tolerance > 1e-4 else 1e-3, 1 - 1e-12))
+    return float(brentq(excess, 1e-3, 1 - 1e-12))
