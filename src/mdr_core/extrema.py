@@ -2,11 +2,11 @@
 
 from collections.abc import Callable
 from functools import cache, lru_cache, partial
-from math import comb, inf, nan
+from math import inf, nan
 from typing import Final
 
 import numpy as np
-from scipy.interpolate import BPoly
+from scipy.interpolate import BSpline, make_interp_spline
 
 from mdr_core.abel.annulus import Annulus, whole
 from mdr_core.doubles import ADJACENT
@@ -33,9 +33,9 @@ LEAST_GAP: Final = 1e-13
 # Points across the bracket of a peak, in parts of it. Each interval of a table, whose interpolation
 # may have a peak in every one, is sampled as finely.
 _NINE: Final = np.linspace(0.0, 1.0, 9)
-# All contacts of rounded punches are similar. One curve of Bernstein polynomials serves them up to
-# this absolute value of log(s/b); number and degree of the polynomials leave an error of 2e-14.
-_CURVED, _PIECES, _DEGREE = 14.0, 28, 16
+# All contacts of rounded punches are similar. One spline serves them up to this absolute value of
+# log(s/b); its number of places and its degree leave an error of 3e-15.
+_CURVED, _PLACES, _DEGREE = 14.0, 600, 7
 
 
 # Intervals of the contact coordinate that may contain the highest peak of a load: index of the
@@ -94,7 +94,7 @@ def _of_similar(profile: Profile, edge: Array) -> Array:
     if isinstance(profile, RoundedPunch):
         with np.errstate(divide="ignore", invalid="ignore"):
             _, s = profile.flank(edge)
-            height = _curve()(np.log(s / profile.flat_radius))[()]
+            height = _curve()(np.log(s / profile.flat_radius), extrapolate=False)[()]
             return height * profile.depth(edge) / s
     return full(nan, edge)
 
@@ -185,16 +185,12 @@ def _over_slope(exponent: float) -> float:
 
 
 @cache
-def _curve() -> BPoly:
+def _curve() -> BSpline:
     """Largest pressure of all rounded punches, times s/(d E*), over log(s/b)."""
-    unit = RoundedPunch(1.0, 1.0)
-    share = _clustered(_DEGREE)
-    ends = np.linspace(-_CURVED, _CURVED, _PIECES + 1)
-    s = np.exp(ends[:-1] + np.diff(ends) * share[:, None])
+    unit, places = RoundedPunch(1.0, 1.0), np.linspace(-_CURVED, _CURVED, _PLACES)
+    s = np.exp(places)
     edge = s * s / (1 + np.hypot(1, s))
-    height = _search(unit, edge.ravel()).reshape(edge.shape) * s / unit.depth(edge)
-    basis = [comb(_DEGREE, k) * share**k * (1 - share) ** (_DEGREE - k) for k in range(_DEGREE + 1)]
-    return BPoly(np.linalg.solve(np.transpose(basis), height), ends, extrapolate=False)
+    return make_interp_spline(places, _search(unit, edge) * s / unit.depth(edge), k=_DEGREE)
 
 
 def _search(profile: Profile, edge: Array, *slip: Array, added: _Field | None = None) -> Array:
