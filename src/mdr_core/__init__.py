@@ -23,6 +23,7 @@ from mdr_core import (
     impact,
     layer,
     normal,
+    profiles,
     subsurface,
     tangential,
     thresholds,
@@ -33,28 +34,7 @@ from mdr_core import (
 from mdr_core.errors import AccuracyError, DefectError, InputError, MDRError, Notice
 from mdr_core.history.slip_kernel import __file__ as _kernel
 from mdr_core.materials import RIGID, Body, Layer, Material, from_bodies
-from mdr_core.profiles import (
-    KINDS,
-    CappedParaboloid,
-    Cone,
-    Ellipsoid,
-    FlatPunch,
-    Hyperboloid,
-    Paraboloid,
-    Power,
-    PowerTerm,
-    Profile,
-    RoundedCone,
-    RoundedPunch,
-    Series,
-    Sphere,
-    SphericalTipCone,
-    Tabulated,
-    TruncatedCone,
-    TruncatedParaboloid,
-    TwoSpheres,
-    slope_of_half_angle,
-)
+from mdr_core.profiles import *  # noqa: F403, every kind
 from mdr_core.table_reader import read_curve, read_table
 
 __version__: Final = "0.1.0"
@@ -63,34 +43,15 @@ COMPILED: Final = not _kernel.endswith(".py")
 
 __all__ = [
     "COMPILED",
-    "KINDS",
     "RIGID",
     "AccuracyError",
     "Body",
-    "CappedParaboloid",
-    "Cone",
     "DefectError",
-    "Ellipsoid",
-    "FlatPunch",
-    "Hyperboloid",
     "InputError",
     "Layer",
     "MDRError",
     "Material",
     "Notice",
-    "Paraboloid",
-    "Power",
-    "PowerTerm",
-    "Profile",
-    "RoundedCone",
-    "RoundedPunch",
-    "Series",
-    "Sphere",
-    "SphericalTipCone",
-    "Tabulated",
-    "TruncatedCone",
-    "TruncatedParaboloid",
-    "TwoSpheres",
     "__version__",
     "adhesion",
     "fields",
@@ -103,7 +64,6 @@ __all__ = [
     "normal",
     "read_curve",
     "read_table",
-    "slope_of_half_angle",
     "subsurface",
     "tangential",
     "thresholds",
@@ -111,3 +71,4 @@ __all__ = [
     "validity",
     "wear",
 ]
+__all__ += profiles.__all__

@@ -30,7 +30,7 @@ from mdr_core.elementwise import full, number, some, where
 from mdr_core.equivalent_1d import coordinate_from_radius
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import LEAST_GAP, largest_with
-from mdr_core.materials import Material, normal_modulus
+from mdr_core.materials import UNKNOWN, Material, normal_modulus
 from mdr_core.normal import CONTROLS, NormalContact
 from mdr_core.profiles import FlatPunch, Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
@@ -232,14 +232,11 @@ class AdhesiveContact(NormalContact):
     @cached_property
     def maximum_pressure(self) -> Array:
         """Largest pressure in the contact [pressure]; the tension at its edge is infinite."""
-        a, rim = (
-            np.ravel(self.contact_radius),
-            np.ravel(self.retraction / (pi * self.contact_radius)),
-        )
+        a, retraction = map(np.ravel, (self.contact_radius, self.retraction))
 
         def tension(load: Indices, r: Array) -> Array:
             square = np.maximum((a[load] - r) * (a[load] + r), LEAST_GAP * a[load] ** 2)
-            return self.curve.correction(self, load, r) - rim[load] * a[load] / np.sqrt(square)
+            return self.curve.correction(self, load, r) - retraction[load] / (pi * np.sqrt(square))
 
         largest = largest_with(self.profile, self.coordinate, self.loaded, tension)
         return self.e_star * largest
@@ -252,16 +249,12 @@ class AdhesiveContact(NormalContact):
         at the edge of a flat at which g' is infinite.
         """
         punch, stable = self.reference.normal_stiffness, self._excess("indentation_depth")
-        if self.profile.is_flat_punch:
-            return punch
         excess = self.curve.excess(_SHARES["normal_force"], self.coordinate)
         with np.errstate(divide="ignore", invalid="ignore"):
             return where(stable < inf, punch * excess / stable, punch)
 
     def _excess(self, name: str) -> Array:
         """Excess of a g'/Delta_l over its value at pull-off; infinite under a flat punch [1]."""
-        if self.profile.is_flat_punch:
-            return full(inf, self.coordinate)
         excess = self.curve.excess(_SHARES[name], self.coordinate)
         return where(excess > self.profile.steepness * ROUNDING, excess, 0.0)
 
@@ -403,7 +396,7 @@ def solve(
     """
     validation.require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     validation.require_single_profile(profile.swept)
-    material = e_star if isinstance(e_star, Material) else None
+    material = e_star if isinstance(e_star, Material) else UNKNOWN
     modulus: Any = normal_modulus(e_star)
     for field, value in {"e_star": modulus, "work_of_adhesion": work_of_adhesion}.items():
         validation.require_single_positive(("material", field), value)
@@ -416,7 +409,7 @@ def solve(
 def on_curve(
     curve: Curve,
     modulus: float,
-    material: Material | None,
+    material: Material,
     loads: Mapping[str, ArrayLike | None],
     range_of_adhesion: float,
 ) -> AdhesiveContact:
@@ -426,7 +419,7 @@ def on_curve(
     ----------
     curve : the states of a profile with a work of adhesion, on a half-space or a layer.
     modulus : E* [pressure].
-    material : effective moduli, None where only E* is given.
+    material : effective moduli, `UNKNOWN` where only E* is given.
     loads : the controls by name, of which exactly one is given.
     range_of_adhesion : distance over which the surfaces attract [length], 0 where it is not given.
     """

@@ -74,11 +74,6 @@ def piecewise(
     return np.where(first, below(np.minimum(place, start)), beyond(np.maximum(place, start)))
 
 
-def common_shape(*values: Any) -> tuple[int, ...]:
-    """Return the shape to which numbers and arrays broadcast, or raise ValueError."""
-    return np.broadcast_shapes(*map(np.shape, values))
-
-
 def broadcast(value: Any, shape: tuple[int, ...]) -> Any:
     """Broadcast a value to a shape; a shape without dimensions gives a number."""
     return value if getattr(value, "shape", ()) == shape else np.broadcast_to(value, shape)

@@ -3,8 +3,9 @@
 Source: notes, §15.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar, Self
 
 import numpy as np
@@ -105,19 +106,36 @@ class Precision:
         return float(condition * relative + 2 * step / np.linalg.norm(curve))
 
 
-def minimum(
-    residual: Callable[[Array], Array],
-    first: Array,
-    slopes: Callable[[Array], Array],
-    bounds: Array,
-) -> Array:
+def require_fitted(
+    fit: Sequence[str], parameters: Sequence[str], known: Mapping[str, float | None]
+) -> None:
+    """Raise InputError unless parameters are fitted, each once, and others are known.
+
+    Parameters: names of the fitted ones, of all, and values of some of them, which are either
+    fitted or known.
+    """
+    if not fit or len({*fit} & {*parameters}) < len(fit):
+        raise InputError(("fit",), f"must hold some of {', '.join(parameters)}, each once")
+    for name, value in known.items():
+        if (name in fit) == (value is not None):
+            detail = "is fitted: leave it out" if name in fit else "is needed unless it is fitted"
+            raise InputError((name,), detail)
+
+
+def minimum(model: Callable[[Array], tuple[Array, Array]], first: Array, bounds: Array) -> Array:
     """Return the parameters of the least sum of squares next to the first ones.
 
-    Parameters: residuals and their slopes as functions of the parameters, and lower and upper
+    Parameters: residuals and their slopes as a function of the parameters, and lower and upper
     bounds, shape (2, n).
     """
+
+    # Residuals and slopes are asked for in turn at one place.
+    @lru_cache(maxsize=1)
+    def at(place: bytes) -> tuple[Array, Array]:
+        return model(np.frombuffer(place))
+
     found = least_squares(
-        *(residual, first, slopes, tuple(bounds)),
+        *(lambda x: at(x.tobytes())[0], first, lambda x: at(x.tobytes())[1], tuple(bounds)),
         x_scale="jac",
         ftol=EPS,
         xtol=EPS,
@@ -125,9 +143,9 @@ def minimum(
     )
 
     def step(x: Array) -> tuple[Array, float]:
-        slope = slopes(x)
-        change = np.asarray(np.linalg.lstsq(slope, -residual(x))[0], dtype=float)
-        return change, float(np.linalg.norm(slope @ change))
+        residual, slopes = model(x)
+        change = np.asarray(np.linalg.lstsq(slopes, -residual)[0], dtype=float)
+        return change, float(np.linalg.norm(slopes @ change))
 
     # The search stops about 1e-8 from the minimum, where rounding errors hide the decrease of the
     # sum of squares. Gauss-Newton steps refine it; each is kept if the next is less than half as

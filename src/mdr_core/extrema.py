@@ -2,15 +2,15 @@
 
 from collections.abc import Callable
 from functools import cache, lru_cache, partial
-from math import comb, inf
+from math import inf, nan
 from typing import Final
 
 import numpy as np
-from scipy.interpolate import BPoly
+from scipy.interpolate import BSpline, make_interp_spline
 
 from mdr_core.abel.annulus import Annulus, whole
 from mdr_core.doubles import ADJACENT
-from mdr_core.elementwise import full, in_blocks, is_number, number, some, where
+from mdr_core.elementwise import every, full, in_blocks, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.inversion import MAX_STEPS, invert
 from mdr_core.profiles import Paraboloid, Power, Profile, RoundedPunch, Tabulated
@@ -33,9 +33,9 @@ LEAST_GAP: Final = 1e-13
 # Points across the bracket of a peak, in parts of it. Each interval of a table, whose interpolation
 # may have a peak in every one, is sampled as finely.
 _NINE: Final = np.linspace(0.0, 1.0, 9)
-# All contacts of rounded punches are similar. One curve of Bernstein polynomials serves them up to
-# this absolute value of log(s/b); number and degree of the polynomials leave an error of 2e-14.
-_CURVED, _PIECES, _DEGREE = 14.0, 28, 16
+# All contacts of rounded punches are similar. One spline serves them up to this absolute value of
+# log(s/b); its number of places and its degree leave an error of 3e-15.
+_CURVED, _PLACES, _DEGREE = 14.0, 600, 7
 
 
 # Intervals of the contact coordinate that may contain the highest peak of a load: index of the
@@ -62,34 +62,41 @@ def largest_stress(
     slip : widths a - c of the slip annulus and stick radii c in the contact coordinate; None for
         c = 0.
     """
-    if isinstance(profile, Paraboloid):
-        root = edge if slip is None else np.sqrt(slip[0] * (edge + slip[1]))
-        return 2 * root / (np.pi * profile.radius)
-    shape, infinite = loaded.shape, _infinite(profile, edge, loaded, slip)
-    if isinstance(profile, Power) and slip is None:
-        # Contacts are similar: the stress over the slope g' is a constant of the exponent.
-        exponent = where(profile.exponent > 1, number(1.0) * profile.exponent, 2.0)
-        stress = np.vectorize(_over_slope, otypes=[float])(exponent)[()] * profile.dg(edge)
-        return where(infinite, inf, where(loaded, stress, 0.0))
-    unknown, result = loaded & ~infinite, where(infinite, inf, full(0.0, edge))
-    if isinstance(profile, RoundedPunch) and slip is None:
-        on_curve = _on_curve(profile, edge)
-        known = unknown & np.isfinite(on_curve)
-        unknown, result = unknown & ~known, where(known, on_curve, result)
-    if not some(unknown):
-        return result
-    if is_number(edge):
-        return _search(profile, *map(np.atleast_1d, (edge, *(slip or ()))))[0]
-    finite, result = np.atleast_1d(unknown), np.atleast_1d(result)
-    parts = [np.broadcast_to(part, finite.shape) for part in (edge, *(slip or ()))]
+    if slip and isinstance(profile, Paraboloid):
+        return 2 * np.sqrt(slip[0] * (edge + slip[1])) / (np.pi * profile.radius)
+    infinite, known = _infinite(profile, edge, loaded, slip), full(nan, edge)
+    if not slip:
+        falls = profile.falls_from_axis(edge)
+        if every(falls):
+            return where(loaded, profile.axis_stress(edge), 0.0)
+        known = _of_similar(profile, edge)
+        if some(falls):
+            known = where(falls, profile.axis_stress(edge), known)
+    result = np.atleast_1d(where(infinite, inf, where(loaded, known, 0.0)))
+    shape, unknown = loaded.shape, np.isnan(result)
+    parts = [np.broadcast_to(part, result.shape) for part in (edge, *(slip or ()))]
     if not profile.swept:
-        result[finite] = _search(profile, *(part[finite] for part in parts))
-        return result.reshape(shape)
+        result[unknown] = _search(profile, *(part[unknown] for part in parts))
+        return result.reshape(shape)[()]
     named = {name: np.broadcast_to(value, shape) for name, value in profile.parameters.items()}
-    for place in zip(*np.nonzero(finite), strict=True):
+    for place in zip(*np.nonzero(unknown), strict=True):
         one = profile.with_parameters({name: float(value[place]) for name, value in named.items()})
         result[place] = _search(one, *(part[place][None] for part in parts))[0]
-    return result
+    return result.reshape(shape)[()]
+
+
+def _of_similar(profile: Profile, edge: Array) -> Array:
+    """Largest pressure over E* of kinds whose contacts are similar [1], NaN where unknown."""
+    if isinstance(profile, Power):
+        # The stress over the slope g' is a constant of the exponent.
+        exponent = where(profile.exponent > 1, number(1.0) * profile.exponent, 2.0)
+        return np.vectorize(_over_slope, otypes=[float])(exponent)[()] * profile.dg(edge)
+    if isinstance(profile, RoundedPunch):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            _, s = profile.flank(edge)
+            height = _curve()(np.log(s / profile.flat_radius), extrapolate=False)[()]
+            return height * profile.depth(edge) / s
+    return full(nan, edge)
 
 
 def pressure_and_slope(profile: Profile, edge: Array) -> tuple[Array, Array]:
@@ -170,14 +177,6 @@ def _infinite(
     return infinite
 
 
-def _on_curve(profile: RoundedPunch, edge: Array) -> Array:
-    """The largest pressure over E* under rounded punches [1], NaN beyond the curve."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        _, s = profile.flank(edge)
-        height = _curve()(np.log(s / profile.flat_radius))[()]
-        return height * profile.depth(edge) / s
-
-
 @lru_cache(maxsize=1024)
 def _over_slope(exponent: float) -> float:
     """Largest pressure under a power, over E* g'(a), for an exponent > 1."""
@@ -186,16 +185,12 @@ def _over_slope(exponent: float) -> float:
 
 
 @cache
-def _curve() -> BPoly:
+def _curve() -> BSpline:
     """Largest pressure of all rounded punches, times s/(d E*), over log(s/b)."""
-    unit = RoundedPunch(1.0, 1.0)
-    share = _clustered(_DEGREE)
-    ends = np.linspace(-_CURVED, _CURVED, _PIECES + 1)
-    s = np.exp(ends[:-1] + np.diff(ends) * share[:, None])
+    unit, places = RoundedPunch(1.0, 1.0), np.linspace(-_CURVED, _CURVED, _PLACES)
+    s = np.exp(places)
     edge = s * s / (1 + np.hypot(1, s))
-    height = _search(unit, edge.ravel()).reshape(edge.shape) * s / unit.depth(edge)
-    basis = [comb(_DEGREE, k) * share**k * (1 - share) ** (_DEGREE - k) for k in range(_DEGREE + 1)]
-    return BPoly(np.linalg.solve(np.transpose(basis), height), ends, extrapolate=False)
+    return make_interp_spline(places, _search(unit, edge) * s / unit.depth(edge), k=_DEGREE)
 
 
 def _search(profile: Profile, edge: Array, *slip: Array, added: _Field | None = None) -> Array:

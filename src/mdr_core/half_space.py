@@ -54,7 +54,7 @@ class LoadedContact(Protocol):
     @property
     def loaded(self) -> Flags: ...
     @property
-    def material(self) -> Material | None: ...
+    def material(self) -> Material: ...
     @property
     def half_space_errors(self) -> "Errors": ...
 
@@ -82,13 +82,12 @@ class Errors(NamedTuple):
 
 def errors(contact: LoadedContact) -> Errors:
     """Return the estimated errors of a contact; Poisson's ratio 0.3 stands for unknown bodies."""
-    material = contact.material
-    known = None if material is None else material.dundurs_beta
+    known = contact.material.dundurs_beta
     beta = abs(_ASSUMED_BETA if known is None else known)
     if contact.profile.body_radii is not None:
         return _of_round_bodies(contact, beta)
     slope = _edge_slope(contact)
-    wall = _wall_error(contact, None if material is None else material.profile_share)
+    wall = _wall_error(contact)
     return Errors((0 * slope, _RADIAL * beta * slope, slope * slope, wall + 0 * slope), slope)
 
 
@@ -101,8 +100,7 @@ def _of_round_bodies(contact: LoadedContact, beta: float) -> Errors:
     0.015 sum s_i x_i + 0.1 |beta| m + 0.05 max x_i^2, and the largest pressure
     0.04 sum s_i x_i + 0.3 |beta| m + 0.4 S^2. Source: notes, §8.
     """
-    bodies = contact.material or Material(1.0)
-    radii = contact.profile.body_radii or ()
+    bodies, radii = contact.material, contact.profile.body_radii or ()
     x1, x2 = (contact.contact_radius / np.abs(radius) for radius in radii)
     k1, k2 = (
         max(_HELD[held], _SOCKET * is_concave(radius))
@@ -120,9 +118,7 @@ def _of_round_bodies(contact: LoadedContact, beta: float) -> Errors:
         radius = 0.015 * mean + 0.1 * beta * largest + 0.05 * steepest**2
         pressure = 0.04 * mean + 0.3 * beta * largest + 0.4 * common**2
         found.append((*force, steepest, radius, pressure))
-    *parts, steepest, radius, pressure = (
-        found[0] if len(found) == 1 else np.maximum(found[0], found[1])
-    )
+    *parts, steepest, radius, pressure = np.max(found, axis=0)
     return Errors(tuple(parts), steepest, radius, pressure)
 
 
@@ -140,38 +136,41 @@ def layer(contact: LoadedContact) -> tuple[Array, Array]:
 
     Source: dimitriadis; notes, §8.
     """
-    material = contact.material
-    if material is None or material.body_thickness is None:
+    thickness = contact.material.body_thickness
+    if thickness is None:
         return 0 * contact.contact_radius, 0 * contact.contact_radius
-    part = contact.contact_radius / material.body_thickness
-    x = _base(material) * part
+    part = contact.contact_radius / thickness
+    x = _base(contact.material) * part
     return part, x + x * x
 
 
-def _base(material: Material | None) -> float:
+def _softer_share(material: Material) -> float:
+    """Share of the more compliant body in the compliance, the whole if it is unknown [1]."""
+    first = material.profile_share
+    return 1.0 if first is None else max(first, 1 - first)
+
+
+def _base(material: Material) -> float:
     """x over a/h. Source: dimitriadis; see `layer`."""
-    nu, first = largest_ratio(material), None if material is None else material.profile_share
-    share = 1.0 if first is None else max(first, 1 - first)
-    return share * 2 / np.pi * (1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu)
+    nu = largest_ratio(material)
+    return _softer_share(material) * 2 / np.pi * (1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu)
 
 
-def thickness_at_a_force(contact: LoadedContact, material: Material, h: float) -> Array:
+def thickness_at_a_force(contact: LoadedContact, h: float) -> Array:
     """Relative error of radius and pressure under a force by a rigid base at the depth h [1].
 
     (2/3) (s/pi) (a/h)^3 int_0^oo (1 - L) w^2 dw, to first order in (a/h)^3, with the share s of the
     more compliant body. Source: manual, Contact with a layer.
     """
-    base = Layer(1.0, "bonded", largest_ratio(material))
+    base = Layer(1.0, "bonded", largest_ratio(contact.material))
     shares, weights = composite_rule(32, 2)
     w = _WAVES * shares
     moment = float(_WAVES * weights @ (softening(base, w) * w * w))
-    first = material.profile_share
-    share = 1.0 if first is None else max(first, 1 - first)
     part = contact.contact_radius / h
-    return np.asarray(2 / 3 * share / np.pi * moment * part**3)
+    return np.asarray(2 / 3 * _softer_share(contact.material) / np.pi * moment * part**3)
 
 
-def stiffening(tolerance: float, material: Material | None) -> float:
+def stiffening(tolerance: float, material: Material) -> float:
     """Return a/h at which the base increases the force at a given depth by a tolerance [1]."""
     return float((np.sqrt(1 + 4 * tolerance) - 1) / (2 * _base(material)))
 
@@ -188,9 +187,9 @@ def on_layer(contact: LoadedContact, layer: Layer) -> Array:
     return np.asarray(bent * (nu / (1 - nu)) ** _COMPRESSIBLE * _edge_slope(contact))
 
 
-def largest_ratio(material: Material | None) -> float:
+def largest_ratio(material: Material) -> float:
     """Poisson's ratio, the larger one of two bodies, assumed where they are unknown [1]."""
-    return max(() if material is None else material.poissons_ratios, default=ASSUMED_RATIO)
+    return max(material.poissons_ratios, default=ASSUMED_RATIO)
 
 
 def _edge_slope(contact: LoadedContact) -> Array:
@@ -203,13 +202,13 @@ def _edge_slope(contact: LoadedContact) -> Array:
     return where(loaded, contact.profile.df(inside), 0.0)
 
 
-def _wall_error(contact: LoadedContact, share: float | None) -> Parameter:
+def _wall_error(contact: LoadedContact) -> Parameter:
     """Estimated error by the side wall of an elastic body with a flat end, which carries no stress.
 
     The flank beyond the contact edge counts as far as it is steeper than at the edge, up to the
-    slope 1, and the body by its `share` in the compliance. [1]
+    slope 1, and the body by its share in the compliance. [1]
     """
-    profile, a = contact.profile, contact.contact_radius
+    profile, a, share = contact.profile, contact.contact_radius, contact.material.profile_share
     if not share or not some(contact.loaded & (profile.first_radius > 0)):
         return 0.0
     reach = np.minimum(2 * a, profile.domain)

@@ -76,8 +76,7 @@ class IntervalMoments:
 
     def contact_coordinate(self, normal: Array) -> Array:
         """Contact coordinate of a normal coordinate; rounding may put it just beyond the domain."""
-        if self.profile.largest_loads is not None:
-            normal = np.minimum(normal, self.profile.largest_loads[self.over_forces])
+        normal = np.minimum(normal, self.profile.largest_loads[self.over_forces])
         return self.profile.coordinate_from_load(normal, of_force=self.over_forces)
 
     def over(self, low: Array, span: Array, ends: Array) -> Moments:

@@ -99,6 +99,8 @@ class Material:
                 require_positive(("material", name), value)
 
 
+UNKNOWN: Final = Material(1.0)
+"""Bodies of which nothing is known: the contact has their E*."""
 # One number, or an array over the cases of a sweep.
 _Number = TypeVar("_Number", bound=Parameter)
 
@@ -193,7 +195,13 @@ def from_bodies(
     shear = sum((2 - body.poissons_ratio) / (4 * body.shear_modulus) for body in parts)
     twist = sum(1 / body.shear_modulus for body in parts)
     ratios = tuple(body.poissons_ratio for body in parts)
-    moduli = 1 / normal, 1 / shear, _dundurs_beta(bodies)
+    mismatch = sum(
+        sign * (1 - 2 * body.poissons_ratio) / body.shear_modulus
+        for sign, body in zip((1, -1), bodies, strict=True)
+        if isinstance(body, Body)
+    )
+    total = sum((1 - body.poissons_ratio) / body.shear_modulus for body in parts)
+    moduli = 1 / normal, 1 / shear, mismatch / (2 * total)
     if layer is not None:
         # Of two equal bodies the second one.
         both = zip(compliances[::-1], ratios[::-1], strict=True)
@@ -204,13 +212,3 @@ def from_bodies(
         layer = replace(layer, poissons_ratio=nu, share=largest / normal)
     held = tuple(body.held if isinstance(body, Body) else "contacts" for body in bodies)
     return Material(*moduli, ratios, share, body_thickness, 1 / twist, (held[0], held[1]), layer)
-
-
-def _dundurs_beta(bodies: Sequence[Body | Literal["rigid"]]) -> float:
-    """Dundurs' beta, the part of the first body minus the part of the second. Source: dundurs."""
-    mismatch, total = 0.0, 0.0
-    for sign, body in zip((1, -1), bodies, strict=True):
-        if isinstance(body, Body):
-            mismatch += sign * (1 - 2 * body.poissons_ratio) / body.shear_modulus
-            total += (1 - body.poissons_ratio) / body.shear_modulus
-    return mismatch / (2 * total)

@@ -9,21 +9,21 @@ from numpy.typing import ArrayLike
 
 from mdr_core import half_space, validity
 from mdr_core.doubles import ADJACENT, LARGEST, ROUNDING
-from mdr_core.elementwise import broadcast, common_shape, every, some, where
+from mdr_core.elementwise import broadcast, where
 from mdr_core.equivalent_1d import coordinate_from_radius
-from mdr_core.errors import InputError, Notice
+from mdr_core.errors import Notice
 from mdr_core.extrema import coordinate_from_pressure, largest_stress, pressure_and_slope
-from mdr_core.materials import Material, normal_modulus
+from mdr_core.materials import UNKNOWN, Material, normal_modulus
 from mdr_core.profiles import Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import (
     as_positive,
+    common_shape,
     extremes,
     only_one,
     require_not_negative,
-    require_positive,
     require_representable,
     require_type,
 )
@@ -57,8 +57,8 @@ class NormalContact(validity.ResultsOverLoads):
     """Contact edge in the contact coordinate of the profile."""
     control: str = "contact_radius"
     """Name of the prescribed load, which is exact."""
-    material: Material | None = None
-    """Material on which the warnings depend; None where only E* is known."""
+    material: Material = UNKNOWN
+    """Material on which the warnings depend; `UNKNOWN` where only E* is known."""
     quantities: ClassVar[tuple[str, ...]] = NORMAL_QUANTITIES
     g_star: ClassVar[None] = None
     """A contact without friction has no shear modulus."""
@@ -87,8 +87,6 @@ class NormalContact(validity.ResultsOverLoads):
     def mean_pressure(self) -> Array:
         """F_N / (pi a^2) [pressure]; at zero load its limit, which may be infinite."""
         area = np.pi * (self.contact_radius * self.contact_radius)
-        if extremes(area)[0] > 0:
-            return self.normal_force / area
         limit = np.multiply(self.e_star, self.profile.tip_pressure)
         return where(area > 0, self.normal_force / where(area > 0, area, 1.0), limit)
 
@@ -98,14 +96,7 @@ class NormalContact(validity.ResultsOverLoads):
 
         It is infinite at a sharp tip, at a slope discontinuity and at the edge of a flat punch.
         """
-        profile, edge, loaded = self.profile, self.coordinate, self.loaded
-        falls = profile.falls_from_axis(edge)
-        if not some(falls):
-            return self.e_star * largest_stress(profile, edge, loaded)
-        stress = where(loaded, profile.axis_stress(edge), 0.0)
-        if not every(falls):
-            stress = where(falls, stress, largest_stress(profile, edge, loaded & ~falls))
-        return self.e_star * stress
+        return self.e_star * largest_stress(self.profile, self.coordinate, self.loaded)
 
     @cached_property
     def half_space_errors(self) -> half_space.Errors:
@@ -233,7 +224,7 @@ class NormalContact(validity.ResultsOverLoads):
             validity.Finding("singular", np.isinf(self.mean_pressure), lambda: sharp),
             validity.infinite_maximum(self),
         ]
-        if self.material is not None and self.material.layer is not None:
+        if self.material.layer is not None:
             found.append(validity.layer_strain(self.indentation_depth, self.material.layer))
         if isinstance(self.profile, Tabulated):
             of_table = [validity.tip(self, self.profile), validity.smoothed(self, self.profile)]
@@ -286,17 +277,13 @@ def solve(
     [9.0856e-05, 0.000181712]
     """
     require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
-    material = e_star if isinstance(e_star, Material) else None
-    # A plain number, the most frequent input, is checked with the load.
-    modulus: Parameter = (
-        e_star
-        if isinstance(e_star, float)
-        else as_positive(("material", "e_star"), normal_modulus(e_star))
-    )
+    material = e_star if isinstance(e_star, Material) else UNKNOWN
+    modulus: Parameter = as_positive(("material", "e_star"), normal_modulus(e_star))
     loads = (indentation_depth, normal_force, contact_radius, maximum_pressure)
     names = (*CONTROLS, "maximum_pressure")
     name, load = only_one(("load",), dict(zip(names, loads, strict=True)))
-    spread = _over_cases(profile, modulus, name, load)
+    cases = modulus, *profile.parameters.values()
+    spread = broadcast(load, common_shape(("load", name), load, "the parameters", *cases))
     coordinate = _coordinate(name, profile, modulus, spread)
     contact = NormalContact(profile, modulus, coordinate, name, material)
     # The prescribed load is returned bit-identical.
@@ -304,24 +291,8 @@ def solve(
     return contact
 
 
-def shape_of_loads(
-    contact: NormalContact, path: tuple[str, str], given: Array, *parameters: Parameter
-) -> tuple[int, ...]:
-    """Return the shape of the loads and parameters that are added to a normal contact.
-
-    Raises InputError at the path if they do not agree with the normal loads.
-    """
-    try:
-        return common_shape(given, contact.coordinate, *parameters)
-    except ValueError:
-        normal = contact.coordinate.shape
-        detail = f"the shape {given.shape} does not agree with the normal loads, {normal}"
-        raise InputError(path, detail) from None
-
-
 def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> Array:
     """Contact coordinate of the edge under a load, after a check of input and results."""
-    require_positive(("material", "e_star"), e_star)
     with np.errstate(all="ignore"):
         if name == "contact_radius":
             coordinate = coordinate_from_radius(profile, load)
@@ -347,22 +318,3 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
         loaded = coordinate > 0 if name == "contact_radius" else load > 0
         require_representable(("load", name), loaded, *results)
     return coordinate
-
-
-def _over_cases(profile: Profile, e_star: Parameter, name: str, load: Array) -> Array:
-    """Load of every case of a sweep; shapes that do not agree are rejected."""
-    parts = [
-        part for part in (e_star, *profile.parameters.values()) if isinstance(part, np.ndarray)
-    ]
-    if not parts:
-        return load
-    try:
-        shape = common_shape(load, *parts)
-    except ValueError:
-        shapes = ", ".join(str(part.shape) for part in parts)
-        raise InputError(
-            ("load", name),
-            f"the shape {load.shape} of the load does not agree with the shapes of the parameters, "
-            f"{shapes}",
-        ) from None
-    return broadcast(load, shape)

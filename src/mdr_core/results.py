@@ -13,7 +13,7 @@ class Results:
     """Object whose results are attributes; `quantities` lists their names."""
 
     quantities: ClassVar[tuple[str, ...]] = ()
-    about: ClassVar[tuple[str, ...]] = ("method", "error_estimate", "model_error", "warnings")
+    about: ClassVar[tuple[str, ...]] = ()
 
     def computed(self) -> dict[str, Any]:
         """Return the quantities by name, in the types in which they are computed."""

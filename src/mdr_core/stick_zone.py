@@ -7,7 +7,6 @@ import numpy as np
 from mdr_core.elementwise import number, some, where
 from mdr_core.equivalent_1d import stick_edge
 from mdr_core.normal import NormalContact
-from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import extremes, reject, require_finite
 
@@ -38,33 +37,18 @@ def solve(
     g_star, friction : effective shear modulus [pressure] and friction coefficient [1].
     name, given : one of `CONTROLS`, and its value.
     """
-    if name == "stick_radius":
-        return _by_radius(contact, _sign_and_size(name, given)[1])
-    ratio = friction if name == "tangential_force" else friction * contact.e_star / g_star
-    normal = getattr(contact, CONTROLS[name])
-    return _by_load(name, contact.profile, contact.coordinate, ratio, normal, given)
-
-
-def _sign_and_size(name: str, given: Array) -> tuple[Array, Array]:
-    """Direction and magnitude of the load, which is validated; a single sign 1 means all cases."""
     require_finite(("tangential", name), given)
-    if extremes(given)[0] >= 0 or name == "stick_radius":
-        return _POSITIVE, given
-    return np.sign(given), np.abs(given)
-
-
-def _by_load(
-    name: str, profile: Profile, coordinate: Array, ratio: Parameter, normal: Array, given: Array
-) -> StickZone:
-    """Results of `solve`, with full slip from the limit on; a force cannot exceed the limit.
-
-    The limit is the ratio times the `normal` load or depth.
-    """
-    sign, size = _sign_and_size(name, given)
-    limit, full_slip, excess = ratio * normal, _NO_FULL_SLIP, _NO_EXCESS
-    force_prescribed, left = name == "tangential_force", limit - size
+    if name == "stick_radius":
+        return _by_radius(contact, given)
+    of_force = name == "tangential_force"
+    # The load or depth at the onset of full slip.
+    ratio = friction if of_force else friction * contact.e_star / g_star
+    limit = ratio * getattr(contact, CONTROLS[name])
+    is_positive = extremes(given)[0] >= 0
+    sign, size = (_POSITIVE, given) if is_positive else (np.sign(given), np.abs(given))
+    full_slip, excess, left = _NO_FULL_SLIP, _NO_EXCESS, limit - size
     if some(left <= 0):
-        if force_prescribed:
+        if of_force:
             detail = (
                 "no equilibrium: the force exceeds friction_coefficient x normal_force; reduce it, "
                 "or prescribe tangential_displacement"
@@ -77,7 +61,7 @@ def _by_load(
         size = np.minimum(size, limit)
         left, limit = where(loaded, np.maximum(left, 0.0), 1.0), where(loaded, limit, 1.0)
     ratios = size / limit, left / limit
-    edge, width = stick_edge(profile, coordinate, *ratios, of_force=force_prescribed)
+    edge, width = stick_edge(contact.profile, contact.coordinate, *ratios, of_force=of_force)
     return edge, width, sign, full_slip, excess
 
 

@@ -14,11 +14,11 @@ from mdr_core.elementwise import broadcast, is_number, some, where
 from mdr_core.extrema import largest_stress
 from mdr_core.interval_moments import interval_moments
 from mdr_core.materials import Material, shear_modulus
-from mdr_core.normal import NormalContact, shape_of_loads
+from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validation import as_positive, only_one, require_type
+from mdr_core.validation import as_positive, common_shape, only_one, require_type
 
 # Relative rounding error of the full-slip displacement mu (E*/G*) d, which has three products.
 _LIMIT_ERROR: Final = 1.5 * EPS
@@ -87,17 +87,14 @@ class TangentialContact(validity.ResultsOverLoads):
     def tangential_force(self) -> Array:
         """F_x = mu [F_N(a) - F_N(c)] [force]. Source: mdr-5, Eq. (5.19)."""
         partial = self._over_annulus(equivalent_1d.force_step, 1.0)
-        if some(self.full_slip):
-            partial = where(self.full_slip, self.limiting_force, partial)
-        return self._signed(partial)
+        return self._signed(where(self.full_slip, self.limiting_force, partial))
 
     @cached_property
     def tangential_displacement(self) -> Array:
         """u_x = mu (E*/G*) [d(a) - d(c)] [length]. Source: mdr-5, Eqs. (5.20), (5.33)."""
         partial = self._over_annulus(equivalent_1d.depth_step, self.g_star)
-        if some(self.full_slip):
-            partial = where(self.full_slip, self._full_slip_displacement, partial) + self.excess
-        return self._signed(partial)
+        beyond = self._full_slip_displacement + self.excess
+        return self._signed(where(self.full_slip, beyond, partial))
 
     def _over_annulus(self, step: _Step, divisor: Parameter) -> Array:
         """Step of depth or force over the annulus, times mu E*/divisor."""
@@ -117,9 +114,8 @@ class TangentialContact(validity.ResultsOverLoads):
     @cached_property
     def slip_width(self) -> Array:
         """a - c [length]."""
-        a = self.normal.contact_radius
         width = 0 * self.width if self.normal.profile.is_flat_punch else self.width
-        return where(self.full_slip, a, width) if some(self.full_slip) else width
+        return where(self.full_slip, self.normal.contact_radius, width)
 
     @cached_property
     def stick_radius(self) -> Array:
@@ -130,7 +126,7 @@ class TangentialContact(validity.ResultsOverLoads):
             # Rounding errors may lead to c > a. Without slip c and a are bit-identical.
             a = self.normal.contact_radius
             c = where(self.width > 0, np.minimum(c, a), a)
-        return where(self.full_slip, 0.0, c) if some(self.full_slip) else c
+        return where(self.full_slip, 0.0, c)
 
     @cached_property
     def tangential_stiffness(self) -> Array:
@@ -320,7 +316,8 @@ def solve(
     loads = (tangential_force, tangential_displacement, stick_radius)
     name, given = only_one(("tangential",), dict(zip(CONTROLS, loads, strict=True)))
     parameters = (modulus, friction_coefficient)
-    shape = shape_of_loads(contact, ("tangential", name), given, *parameters)
+    others = "the normal loads", contact.coordinate
+    shape = common_shape(("tangential", name), given, *others, *parameters)
     edge, width, sign, full_slip, excess = stick_zone.solve(contact, *parameters, name, given)
     edge, width = broadcast(edge, shape), broadcast(width, shape)
     result = TangentialContact(

@@ -100,8 +100,8 @@ def of_contact(contact: NormalContact, tolerance: float) -> tuple[Threshold, ...
     ]
     depth = "indentation_depth"
     if isinstance(profile, Paraboloid):
-        ratios = () if contact.material is None else contact.material.poissons_ratios
-        least = 2 * _shear_below(min(ratios, default=ASSUMED_RATIO)) * contact.maximum_pressure
+        nu = min(contact.material.poissons_ratios, default=ASSUMED_RATIO)
+        least = 2 * _shear_below(nu) * contact.maximum_pressure
         found.append(Threshold("yield", "yield_strength", least, depth, "elastic_plastic"))
     if isinstance(profile, Sphere):
         radius = full(_like_paraboloid(tolerance), a) * profile.radius
@@ -128,4 +128,4 @@ def _like_paraboloid(tolerance: float) -> float:
         force = (1 + x * x) * atanh(x) - x
         return depth / (3 * force / 4) ** (2 / 3) - 1 - tolerance
 
-    return float(brentq(excess, 1e-2 if tolerance > 1e-4 else 1e-3, 1 - 1e-12))
+    return float(brentq(excess, 1e-3, 1 - 1e-12))

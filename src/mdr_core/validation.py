@@ -202,6 +202,22 @@ def as_curve(places: str, **given: ArrayLike) -> tuple[Array, Array]:
     return first, second
 
 
+def common_shape(
+    path: tuple[str | int, ...], given: Array, others: str, *values: Any
+) -> tuple[int, ...]:
+    """Return the shape to which loads and other values broadcast, or raise InputError at the path.
+
+    `others` is the word for the other values.
+    """
+    shapes = [getattr(value, "shape", ()) for value in values]
+    try:
+        return np.broadcast_shapes(given.shape, *shapes)
+    except ValueError:
+        listed = ", ".join(str(shape) for shape in shapes if shape)
+        detail = f"the shape {given.shape} does not agree with {others}, {listed}"
+        raise InputError(path, detail) from None
+
+
 def require_representable(path: tuple[str | int, ...], used: Flags, *results: Array) -> None:
     """Raise InputError at the first load whose results are not representable as doubles.
 

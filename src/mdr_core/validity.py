@@ -16,7 +16,7 @@ from typing import Any, ClassVar, Final, NamedTuple, Protocol
 import numpy as np
 
 from mdr_core import half_space
-from mdr_core.elementwise import every, full, number, some, where
+from mdr_core.elementwise import full, number, some, where
 from mdr_core.errors import Notice, Remedy
 from mdr_core.half_space import ASSUMED_RATIO, LoadedContact
 from mdr_core.materials import Layer
@@ -163,10 +163,9 @@ def _under_a_force(contact: LoadedContact, error: Array | None) -> Array | None:
 
     None where there is neither, and under a flat punch, whose radius is given.
     """
-    material = contact.material
-    thickness = None if material is None else material.body_thickness
-    if material is not None and thickness is not None and not contact.profile.is_flat_punch:
-        base = half_space.thickness_at_a_force(contact, material, thickness)
+    thickness = contact.material.body_thickness
+    if thickness is not None and not contact.profile.is_flat_punch:
+        base = half_space.thickness_at_a_force(contact, thickness)
         error = base if error is None else error + base
     return None if error is None else np.minimum(error, 1.0)
 
@@ -202,10 +201,10 @@ def model_error(contact: SolvedContact) -> Array:
     is_socket = any(map(half_space.is_concave, contact.normal.profile.body_radii or ()))
     counted = 0.0 if is_socket else errors.parts[0]
     error = errors.force + np.maximum(layer - counted, 0.0)
-    if material is not None and material.layer is not None:
+    if material.layer is not None:
         error = error + half_space.on_layer(contact.normal, material.layer)
     if contact.g_star is not None:
-        beta = 0.0 if material is None else material.dundurs_beta or 0.0
+        beta = material.dundurs_beta or 0.0
         ratio = half_space.largest_ratio(material)
         error = error + beta**2 / 3 + _TRANSVERSE * (ratio / (4 - 2 * ratio)) ** 2
     return np.minimum(error, 1.0)
@@ -222,8 +221,7 @@ def findings(contact: SolvedContact) -> list[Finding]:
     """
     found = of_normal_contact(contact.normal, contact.slips_from)
     if contact.g_star is not None:
-        material = contact.normal.material
-        beta = None if material is None else material.dundurs_beta
+        beta = contact.normal.material.dundurs_beta
         found.append(of_moduli(contact.normal.e_star, contact.g_star, beta))
     return found
 
@@ -290,14 +288,14 @@ def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Fin
     """
     material = contact.material
     errors, radii = contact.half_space_errors, contact.profile.body_radii
-    is_known = material is not None and material.dundurs_beta is not None
     in_socket = any(map(half_space.is_concave, radii or ()))
     instead: Remedy = "conforming_contact" if in_socket else "finite_elements"
     model = "a model of conforming contact" if in_socket else "finite elements"
 
     def message() -> str:
         total, steepest = extremes(errors.force)[1], extremes(errors.steepness)[1]
-        assumed = "" if is_known else f" (Poisson's ratio {ASSUMED_RATIO} assumed)"
+        is_assumed = material.dundurs_beta is None
+        assumed = f" (Poisson's ratio {ASSUMED_RATIO} assumed)" if is_assumed else ""
         flat = radii is not None and np.all(np.isinf(radii[1]))
         second = " of the first body; the second counts as flat" if flat else ""
         causes = (
@@ -313,7 +311,6 @@ def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Fin
             f"mainly from {cause}; {remedy}, or use {model}"
         )
 
-    ratios = () if material is None else material.poissons_ratios
     profile = contact.profile
     tip_is_open = isinstance(profile, Tabulated) and profile.fit.rival > _LIMITS["tip"]
 
@@ -321,7 +318,7 @@ def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Fin
         # A tip of a table that may be smooth as well proves nothing.
         if tip_is_open and radius == 0:
             return False
-        return infinite_deviator(contact.profile, radius, ratios, slips_from)
+        return infinite_deviator(profile, radius, material.poissons_ratios, slips_from)
 
     def places() -> str:
         return (
@@ -330,7 +327,7 @@ def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Fin
         )
 
     found = [_above_limit("half_space", errors.force, message, instead)]
-    if material is not None and material.body_thickness is not None:
+    if material.body_thickness is not None:
         found.append(_thin_body(contact))
     if radii is not None:
         found.append(_large_strain(contact))
@@ -446,8 +443,6 @@ def _infinite(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool
     found = contact.contact_radius < 0
     for b in contact.profile.infinite_pressure_radii:
         found = found | (contact.loaded & (b <= contact.contact_radius) & counts(b))
-        if every(found):
-            break
     return found
 
 

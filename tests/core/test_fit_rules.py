@@ -236,5 +236,5 @@ def test_fit_reaches_minimum_to_rounding_error(size: float) -> None:
 
 def test_search_ends_where_residuals_vanish() -> None:
     bounds = np.array([[-np.inf] * 2, [np.inf] * 2])
-    found = minimum(np.zeros_like, np.ones(2), lambda _: np.eye(2), bounds)
+    found = minimum(lambda x: (np.zeros_like(x), np.eye(2)), np.ones(2), bounds)
     assert found.tolist() == [1.0, 1.0]

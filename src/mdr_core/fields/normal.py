@@ -218,8 +218,6 @@ def by_load(profile: Profile, shape: tuple[int, ...], *columns: Any) -> list[lis
     Raises InputError if a parameter of the profile is an array.
     """
     require_single_profile(profile.swept)
-    if not shape:
-        return [[float(column)] for column in columns]
     return [np.broadcast_to(column, shape).ravel().tolist() for column in columns]
 
 

@@ -9,7 +9,6 @@ Source: notes, §15.
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from math import inf, pi, sqrt
 from typing import Final
 
@@ -68,7 +67,7 @@ class Model:
         """Largest depth on the profile, or of the curve on a layer [length]."""
         if self.on_layer is not None:
             return self.on_layer.deepest
-        return float((self.profile.largest_loads or (inf,))[0])
+        return float(self.profile.largest_loads[0])
 
     @property
     def reach(self) -> float:
@@ -89,7 +88,7 @@ class Model:
     def require_points(self, touching: int) -> None:
         """Raise InputError unless more points are in contact than parameters are fitted."""
         if touching <= len(self.fit):
-            ends = (self.profile.largest_loads or (inf,))[0]
+            ends = self.profile.largest_loads[0]
             remedy = "measure deeper, or more points"
             if ends < np.ptp(self.depth):
                 remedy = f"the profile ends at the depth {ends:.3g}: give a longer one"
@@ -210,19 +209,12 @@ class Model:
         def values(x: Array) -> Parameters:
             return start | dict(zip(self.fit, (x * unit).tolist(), strict=True))
 
-        # Residuals and slopes are asked for in turn at one place.
-        @lru_cache(maxsize=1)
-        def evaluated(place: bytes) -> tuple[Array, Array]:
-            forces, slopes = self.at(values(np.frombuffer(place)))
+        def residual_and_slopes(x: Array) -> tuple[Array, Array]:
+            forces, slopes = self.at(values(x))
             return (forces - self.force) / size, slopes * unit / size
 
         with suppress(ValueError, ZeroDivisionError, np.linalg.LinAlgError):
-            found = minimum(
-                lambda x: evaluated(x.tobytes())[0],
-                first,
-                lambda x: evaluated(x.tobytes())[1],
-                bounds,
-            )
+            found = minimum(residual_and_slopes, first, bounds)
             if np.isfinite(found).all():
                 return values(found)
         detail = "does not determine the parameters: measure deeper, or fit fewer of them"

@@ -5,7 +5,7 @@ Source: notes, §15.
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Final, Literal, NamedTuple
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from mdr_core import curve_segments
 from mdr_core.curve_segments import Drift, phases
 from mdr_core.errors import InputError
+from mdr_core.estimation import require_fitted
 from mdr_core.fit import adhesive
 from mdr_core.fit.model import PARAMETERS, Model
 from mdr_core.fit.result import Fit, result
@@ -20,7 +21,7 @@ from mdr_core.layer import DepthCurve
 from mdr_core.layer.equation import LARGEST
 from mdr_core.materials import RIGID, Body, Layer, from_bodies
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Flags
 from mdr_core.validation import (
     as_curve,
     require_finite,
@@ -33,17 +34,6 @@ from mdr_core.validation import (
 
 # Branches of a curve that are fitted.
 _SEGMENTS: Final = "loading", "unloading"
-
-
-class _Curve(NamedTuple):
-    """Measured curve after the subtraction of its drift."""
-
-    depth: Array
-    force: Array
-    drift_error: Array
-    """Standard error of the subtracted drift at each point [length]."""
-    kinds: NDArray[np.str_]
-    """See `phases`; empty where neither a segment nor the drift of a hold is asked for."""
 
 
 def solve(
@@ -114,28 +104,29 @@ def solve(
     2e+09 3e-07
     """
     require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
-    curve = as_curve("depths", indentation_depth=indentation_depth, normal_force=normal_force)
-    if np.ptp(curve[0]) == 0:
+    given = {"indentation_depth": indentation_depth, "normal_force": normal_force}
+    depth, force = as_curve("depths", **given)
+    if np.ptp(depth) == 0:
         raise InputError(("indentation_depth",), "must hold different depths")
-    known_drift = drift, drift_rate, drift_rate_error
-    corrected, subtracted = _without_drift(curve, time, segment, *known_drift)
-    depth, force, drift_error = _branch(corrected, segment)
-    unknown = [name for name in fit if name not in PARAMETERS]
-    if unknown or not fit or len(set(fit)) < len(fit):
-        raise InputError(("fit",), f"must hold some of {', '.join(PARAMETERS)}, each once")
-    if ("e_star" in fit) == (e_star is not None):
-        reason = (
-            "is fitted: leave it out" if e_star is not None else "is needed unless it is fitted"
-        )
-        raise InputError(("e_star",), reason)
+    times = None if time is None else _times(depth, time)
+    has_phases = segment is not None or drift == "hold"
+    kinds = phases(depth, force, times) if has_phases else np.empty(0, dtype=np.str_)
+    subtracted = _drift(depth, force, times, kinds, drift, drift_rate, drift_rate_error)
+    drift_error = np.zeros(depth.size)
+    if subtracted and times is not None:
+        depth, drift_error = depth - subtracted.rate * times, subtracted.error * times
+    if segment is not None:
+        used = _of_segment(kinds, segment)
+        depth, force, drift_error = depth[used], force[used], drift_error[used]
+    _require_rise(depth, force)
+    require_fitted(fit, PARAMETERS, {"e_star": e_star})
     for name, value in (("e_star", e_star), ("noise", noise)):
         if value is not None:
             require_single_positive((name,), value)
     if "work_of_adhesion" in fit and profile.is_flat_punch:
         detail = "holds work_of_adhesion, on which only the pull-off of a flat punch depends"
         raise InputError(("fit",), detail)
-    deepest = profile.largest_loads
-    if deepest is not None and "contact_point" not in fit and depth.max() > deepest[0]:
+    if "contact_point" not in fit and depth.max() > profile.largest_loads[0]:
         place = ("indentation_depth", int(depth.argmax()))
         raise InputError(place, "lies beyond the end of the profile: give a longer one")
     if layer is not None and layer.poissons_ratio is None:
@@ -147,8 +138,7 @@ def solve(
     is_adhesive = "work_of_adhesion" in fit
     found = adhesive.solve(model) if is_adhesive else result(model, model.best())
     if subtracted:
-        rate, error = subtracted
-        found = replace(found, drift_rate=rate, drift_rate_error=error)
+        found = replace(found, drift_rate=subtracted.rate, drift_rate_error=subtracted.error)
     return found if poissons_ratio is None else _of_sample(found, poissons_ratio, indenter)
 
 
@@ -187,65 +177,65 @@ def _of_sample(found: Fit, ratio: float, indenter: Body | Literal["rigid"]) -> F
     )
 
 
-def _without_drift(
-    curve: tuple[Array, Array],
-    time: ArrayLike | None,
-    segment: str | None,
+def _times(depth: Array, time: ArrayLike) -> Array:
+    """Return the times of the points, or an InputError."""
+    _, times = as_curve("depths", indentation_depth=depth, time=time)
+    if np.any(falls := np.diff(times) < 0):
+        detail = "is less than the previous time: sort the points by time"
+        raise InputError(("time", int(falls.argmax()) + 1), detail)
+    return times
+
+
+def _drift(
+    depth: Array,
+    force: Array,
+    times: Array | None,
+    kinds: NDArray[np.str_],
     drift: str | None,
     rate: float | None,
     error: float | None,
-) -> tuple[_Curve, Drift | None]:
-    """Return the curve with its phases, and the drift that is subtracted from its depths.
+) -> Drift | None:
+    """Return the drift to subtract from the depths, None without one.
 
-    Parameters: depths and forces, and see `solve`.
+    Parameters: the curve, `phases`, and see `solve`.
     """
-    depth, force = curve
-    times = None
-    if time is not None:
-        _, times = as_curve("depths", indentation_depth=depth, time=time)
-        if np.any(falls := np.diff(times) < 0):
-            raise InputError(
-                ("time", int(falls.argmax()) + 1),
-                "is less than the previous time: sort the points by time",
-            )
-    has_phases = segment is not None or drift == "hold"
-    kinds = phases(depth, force, times) if has_phases else np.empty(0, dtype=np.str_)
     if rate is None and error is not None:
         raise InputError(("drift_rate_error",), "needs drift_rate: give both or neither")
     if rate is None and drift is None:
-        return _Curve(depth, force, np.zeros(depth.size), kinds), None
+        return None
     if times is None:
         raise InputError(("time",), "times of the points are needed for the drift")
-    found = None
     if rate is not None:
         if drift is not None:
             raise InputError(("drift_rate",), "and drift exclude each other: give one of them")
-        uncertain = 0.0 if error is None else error
-        found = Drift(single(("drift_rate",), rate), single(("drift_rate_error",), uncertain))
-        require_finite(("drift_rate",), np.asarray(found.rate))
-        require_not_negative(("drift_rate_error",), np.asarray(found.error))
-    elif drift == "hold":
-        found = curve_segments.drift(depth, force, times, kinds)
+        known = Drift(single(("drift_rate",), rate), single(("drift_rate_error",), error or 0.0))
+        require_finite(("drift_rate",), np.asarray(known.rate))
+        require_not_negative(("drift_rate_error",), np.asarray(known.error))
+        return known
+    found = curve_segments.drift(depth, force, times, kinds) if drift == "hold" else None
     if found is None:
         detail = (
             "must be hold, and the curve must have a hold at a constant force in the lower half"
         )
         raise InputError(("drift",), f"{detail} of its range: else give drift_rate")
-    return _Curve(depth - found.rate * times, force, found.error * times, kinds), found
+    return found
 
 
-def _branch(curve: _Curve, segment: str | None) -> tuple[Array, Array, Array]:
-    """Return depths, forces and the effect of the drift of a branch, or an InputError."""
-    depth, force, drift_error, kinds = curve
-    if segment is not None:
-        if segment not in _SEGMENTS:
-            raise InputError(("segment",), f"must be one of {', '.join(_SEGMENTS)}")
-        used = kinds == segment
-        if np.sum(used) < 2:
-            raise InputError(("segment",), f"is not in the curve: there is no {segment}")
-        depth, force, drift_error = depth[used], force[used], drift_error[used]
-    # The force falls to a pull-off too, whose least force is farther from most forces than the
-    # largest one.
+def _of_segment(kinds: NDArray[np.str_], segment: str) -> Flags:
+    """Return True for the points of a branch, or an InputError if there are none."""
+    if segment not in _SEGMENTS:
+        raise InputError(("segment",), f"must be one of {', '.join(_SEGMENTS)}")
+    used = kinds == segment
+    if np.sum(used) < 2:
+        raise InputError(("segment",), f"is not in the curve: there is no {segment}")
+    return used
+
+
+def _require_rise(depth: Array, force: Array) -> None:
+    """Raise InputError if the force falls with the depth.
+
+    It falls to a pull-off too, whose least force is farther from most forces than the largest one.
+    """
     height, order = force - np.median(force), np.argsort(depth, kind="stable")
     tenth = max(depth.size // 10, 1)
     falls = height[order[-tenth:]].mean() < height[order[:tenth]].mean()
@@ -254,4 +244,3 @@ def _branch(curve: _Curve, segment: str | None) -> tuple[Array, Array, Array]:
             "the largest force lies at a small depth: reverse the sign of a separation or height"
         )
         raise InputError(("indentation_depth",), detail)
-    return depth, force, drift_error

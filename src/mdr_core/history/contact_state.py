@@ -59,7 +59,6 @@ class LoadPointResults(Results):
         "tangential_energy",
         "dissipation",
     )
-    about: ClassVar[tuple[str, ...]] = ()
 
     @property
     def displacement_ratio(self) -> Any:
@@ -151,9 +150,8 @@ class ContactState(LoadPointResults):
     def _edge(self, below: Edge, span: Any, depth: Any, slope: Any) -> Edge:
         """Edge of the vertex at a depth, `span` above another one."""
         profile = self.profile
-        if profile.largest_loads is not None:
-            # A rounding error may place a corner deeper than the load point.
-            depth = min(depth, profile.largest_loads[0])
+        # A rounding error may place a corner deeper than the load point.
+        depth = min(depth, profile.largest_loads[0])
         coordinate = profile.coordinate_from_depth(depth)
         force = profile.reduced_force(coordinate)
         grown = force - below.force
@@ -294,9 +292,9 @@ def advance(
     displacement = single(("tangential_displacement",), tangential_displacement)
     require_finite(("indentation_depth",), number(depth))
     require_finite(("tangential_displacement",), number(displacement))
-    profile, largest = state.profile, state.profile.largest_loads
-    if largest is not None:
-        require_inside(("indentation_depth",), number(depth) > largest[0], profile)
+    profile = state.profile
+    beyond = number(depth) > profile.largest_loads[0]
+    require_inside(("indentation_depth",), beyond, profile)
     line, kept = slip_memory.moved(state.polyline, depth, displacement / state.displacement_ratio)
     moduli = state.e_star, state.g_star, state.friction_coefficient
     following = ContactState(profile, *moduli, line, state.polyline)

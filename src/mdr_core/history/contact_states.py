@@ -230,9 +230,8 @@ def advance_many(
         require_finite(path, values)
     if isinstance(states, ContactState):
         states = _repeated(states, count)
-    profile, largest = states.profile, states.profile.largest_loads
-    if largest is not None:
-        require_inside(("indentation_depth",), loads[0] > largest[0], profile)
+    profile = states.profile
+    require_inside(("indentation_depth",), loads[0] > profile.largest_loads[0], profile)
     after = np.empty((2, count))
     after[0], after[1] = loads[0], loads[1] / states.displacement_ratio
     lines, codes = slip_memory.moved_each(states.polylines, after), states.regime_codes

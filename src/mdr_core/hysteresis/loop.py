@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from mdr_core import residuals, tangential
 from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
-from mdr_core.estimation import Precision, minimum
+from mdr_core.estimation import Precision, minimum, require_fitted
 from mdr_core.hysteresis.result import PARAMETERS, LoopFit
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
@@ -111,18 +111,14 @@ def solve(
     given = g_star, friction_coefficient, None, rig_compliance, None
     known = dict(zip(PARAMETERS, given, strict=True))
     fit = [name for name in PARAMETERS[:4] if known[name] is None] if fit is None else fit
-    if not fit or len({*fit} & {*PARAMETERS}) < len(fit):
-        raise InputError(("fit",), f"must hold some of {', '.join(PARAMETERS)}, each once")
-    for name in ("g_star", "friction_coefficient", "rig_compliance"):
-        if (name in fit) != (known[name] is None):
-            detail = "is fitted: leave it out" if name in fit else "is needed unless it is fitted"
-            raise InputError((name,), detail)
-        if (value := known[name]) is None:
-            continue
-        if name == "rig_compliance":
-            require_not_negative((name,), np.asarray(single((name,), value)))
-        else:
+    names = "g_star", "friction_coefficient", "rig_compliance"
+    require_fitted(fit, PARAMETERS, {name: known[name] for name in names})
+    for name in names[:2]:
+        if (value := known[name]) is not None:
             require_single_positive((name,), value)
+    if rig_compliance is not None:
+        place = ("rig_compliance",)
+        require_not_negative(place, np.asarray(single(place, rig_compliance)))
     lists = {"tangential_displacement": tangential_displacement}
     curve = as_curve("displacements", **lists, tangential_force=tangential_force)
     if curve[0].size < _FEWEST * len(fit) or np.ptp(curve[0]) == 0:
@@ -251,12 +247,11 @@ class _Loop:
             values[self.free] = free
             return values
 
-        found = minimum(
-            lambda free: self.forces(whole(free)) - measured,
-            start[self.free],
-            lambda free: self.slopes(whole(free)),
-            bounds[:, self.free],
-        )
+        def model(free: Array) -> tuple[Array, Array]:
+            x = whole(free)
+            return self.forces(x) - measured, self.slopes(x)
+
+        found = minimum(model, start[self.free], bounds[:, self.free])
         x = whole(found)
         residual = measured - self.forces(x)
         scatter = float(np.sqrt(residual @ residual / (residual.size - len(self.fit))))

@@ -13,7 +13,7 @@ from numpy.polynomial.chebyshev import chebder, chebval
 from scipy.special import j0
 
 from mdr_core import materials
-from mdr_core.elementwise import full, where
+from mdr_core.elementwise import where
 from mdr_core.extrema import largest_with
 from mdr_core.layer.equation import POINTS, States, angles, states, waves
 from mdr_core.materials import Layer
@@ -73,8 +73,6 @@ class LayerContact(NormalContact):
     @cached_property
     def maximum_pressure(self) -> Array:
         """Largest pressure [pressure]."""
-        if self.profile.is_flat_punch:
-            return self.half_space.maximum_pressure
         part = largest_with(self.profile, self.coordinate, self.loaded, self.correction)
         return where(self.loaded, self.e_star * part, 0.0)
 
@@ -142,6 +140,4 @@ class LayerContact(NormalContact):
     @property
     def edge_errors(self) -> Array:
         """Relative error of the contact radius of each case [1]."""
-        return (
-            full(0.0, self.coordinate) + (self.control != "contact_radius") * self.error_estimates
-        )
+        return self.error_estimates * (self.control != "contact_radius")

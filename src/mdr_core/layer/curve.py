@@ -20,8 +20,8 @@ from mdr_core.typing import Array
 
 # Polynomials over the contact radius between two breaks of the profile, and one more for each a/h.
 _COUNT, _MORE = 20, 3
-# Knots of the spline between two breaks, and the least error over the largest force: of twenty
-# curves of ten kinds, that of the power 1/2 errs most, by 5.5e-9.
+# Knots of the spline between two breaks, and the least error over the largest force: 44 curves of
+# nine kinds err by at most 8e-10, those of the power 40 by 1.7e-8.
 _KNOTS, _LEAST_ERROR = 400, 1e-8
 # Least z: the force there is below rounding error, and the slope still a quotient of two numbers.
 _LEAST: Final = 1e-8
@@ -84,9 +84,7 @@ class DepthCurve:
         modes = chebvander(2 * shares - 1, len(self._ratios) - 1)
         for k, (low, high) in enumerate(pairwise(self._edges)):
             s = low + (high - low) * shares**2
-            # On the axis the ratios are quotients of zeros.
-            plain = np.array(self._plain(np.maximum(s, _LEAST**2 * high)))
-            depth, force, stiffness = self._ratios[..., k].T @ modes.T * plain
+            depth, force, stiffness = self._ratios[..., k].T @ modes.T * np.array(self._plain(s))
             z = _share(depth, depth[0], depth[-1])
             slope = 2 * stiffness * (depth[-1] - depth[0]) * z
             splines.append(CubicHermiteSpline(z, force, slope))

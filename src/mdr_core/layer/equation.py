@@ -13,7 +13,7 @@ profile consists of the moments of g' with Chebyshev's polynomials.
 Source: lebedev; hayes; manual, Contact with a layer.
 """
 
-from math import ceil, pi
+from math import ceil, inf, pi
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -49,7 +49,7 @@ class States(NamedTuple):
     edge_growth: Array
     """a dq1(a)/da."""
     depth_slope: Array
-    """dd/da at the contact edge."""
+    """dd/da at the contact edge, infinite under a flat punch."""
     condition: Array
     """Amplification of rounding errors."""
     correction: Array
@@ -118,7 +118,7 @@ def _block(
         depth = coordinate
         force, correction = depth * stiffness, depth[:, None] * (punch - 1)
         weights = depth[:, None] * whole
-        energy, slope = depth * force / 2, full(0.0, depth)
+        energy, slope = depth * force / 2, full(inf, depth)
     else:
         start = full(1.0, a) * profile.first_radius
         # The rule resolves the least number of polynomials in any case.

@@ -88,15 +88,14 @@ def solve(
 def _coordinate(profile: Profile, layer: Layer, name: str, load: Array) -> Array:
     """Contact coordinate under loads, forces over E*."""
     validation.require_not_negative(("load", name), load)
-    validation.require_finite(("load", name), load)
     of_force = name == "normal_force"
     if name == "contact_radius":
         return coordinate_from_radius(profile, load)
     if profile.is_flat_punch:
         return load / states(profile, layer, np.ones(1)).stiffness[0] if of_force else load
     end = largest_coordinate(profile, layer)
-    most = (profile.largest_loads or (np.inf, np.inf))[of_force]
-    start = normal.solve(profile, 1.0, **{name: np.minimum(load, most)}).coordinate
+    within = np.minimum(load, profile.largest_loads[of_force])
+    start = normal.solve(profile, 1.0, **{name: within}).coordinate
     if np.max(start) * _DEEPER > end:
         last = states(profile, layer, np.atleast_1d(end))
         beyond = np.asarray(load > (last.force if of_force else last.depth)[0])

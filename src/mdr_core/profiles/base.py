@@ -216,10 +216,10 @@ class Profile(ABC):
         return self.contact_radius(number(0.0))
 
     @cached_property
-    def largest_loads(self) -> tuple[Parameter, Parameter] | None:
-        """Depth [length] and F_N/E* [length^2] at the end of the domain; None without an end."""
+    def largest_loads(self) -> tuple[Parameter, Parameter]:
+        """Depth [length] and F_N/E* [length^2] at the end of the domain; infinite without one."""
         end = number(1.0) * self.domain
-        return None if some(end == inf) else (self.depth(end), self.reduced_force(end))
+        return (inf, inf) if some(end == inf) else (self.depth(end), self.reduced_force(end))
 
     @property
     def scale(self) -> Parameter:
@@ -307,10 +307,8 @@ class Profile(ABC):
 
     def _root(self, target: Array, *, of_force: bool) -> Array:
         """Contact coordinate at which a load has a value within the domain."""
-        if self.largest_loads is not None:
-            name = "normal_force" if of_force else "indentation_depth"
-            require_inside(("load", name), target > self.largest_loads[of_force], self)
-
+        name = "normal_force" if of_force else "indentation_depth"
+        require_inside(("load", name), target > self.largest_loads[of_force], self)
         # At a pole the load is infinite, and no power is known.
         scale = number(1.0) * np.minimum(self.scale, self.pole / 2)
         with np.errstate(all="ignore"):

@@ -229,7 +229,7 @@ def _onset(
     radii = [b for b in radii if infinite_deviator(one, b, (nu,), slips_from)]
     forces = [normal.solve(one, e_star, contact_radius=b).normal_force for b in radii]
     singular = min(map(float, forces), default=inf)
-    last = inf if one.largest_loads is None else one.largest_loads[1]
+    last = one.largest_loads[1]
     # Nearer the edge of a flat the stress beneath it no longer depends on the load.
     least = e_star * float(one.reduced_force(number(_RESOLVED * one.first_radius)))
     lowest = low = max(log(force) - _REACH, log(least) + _RTOL if least > 0 else -inf)

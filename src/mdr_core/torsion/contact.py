@@ -13,13 +13,14 @@ from mdr_core import conditioning, validity
 from mdr_core.doubles import EPS
 from mdr_core.elementwise import in_blocks, where
 from mdr_core.materials import Material, twist_modulus
-from mdr_core.normal import NormalContact, shape_of_loads
+from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile, Tabulated
 from mdr_core.quadrature import composite_rule
 from mdr_core.torsion.curve import DEEPEST, VirginCurves
 from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import (
     as_positive,
+    common_shape,
     only_one,
     reject,
     require_finite,
@@ -127,7 +128,7 @@ class TorsionalContact(validity.ResultsOverLoads):
     @property
     def g_star(self) -> float | None:
         """G* of the bodies [pressure], from which the warnings detect dissimilar bodies."""
-        return None if self.normal.material is None else self.normal.material.g_star
+        return self.normal.material.g_star
 
     @cached_property
     def model_error(self) -> Array:
@@ -199,7 +200,8 @@ def solve(
     loads = (torque, rotation, stick_radius)
     name, given = only_one(("torsion",), dict(zip(CONTROLS, loads, strict=True)))
     require_finite(("torsion", name), given)
-    shape = shape_of_loads(contact, ("torsion", name), given, modulus, friction_coefficient)
+    others = "the normal loads", contact.coordinate, modulus, friction_coefficient
+    shape = common_shape(("torsion", name), given, *others)
     cube = contact.contact_radius * contact.contact_radius * contact.contact_radius
     require_representable(("load", contact.control), contact.loaded, cube)
 

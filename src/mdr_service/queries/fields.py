@@ -151,6 +151,6 @@ def _require_consistent(query: StressQuery) -> None:
 
 def _method(contact: NormalContact, names: list[Any]) -> str:
     """Return the most expensive method of the fields."""
-    on_layer = contact.material is not None and contact.material.layer is not None
+    on_layer = contact.material.layer is not None
     closed = _FOUNDATION.union(contact.profile.closed_forms)
     return contact.method if on_layer or closed.issuperset(names) else "quadrature"
