@@ -6,6 +6,7 @@ Source: notes, §15.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from math import inf
 from typing import ClassVar, Self
 
 import numpy as np
@@ -144,6 +145,9 @@ def minimum(model: Callable[[Array], tuple[Array, Array]], first: Array, bounds:
 
     def step(x: Array) -> tuple[Array, float]:
         residual, slopes = model(x)
+        # LAPACK writes to the terminal if a slope is not finite.
+        if not np.isfinite(slopes).all():
+            return np.zeros_like(x), inf
         change = np.asarray(np.linalg.lstsq(slopes, -residual)[0], dtype=float)
         return change, float(np.linalg.norm(slopes @ change))
 

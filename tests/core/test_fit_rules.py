@@ -1,13 +1,13 @@
 """A fit names the branch, the noise, the point or the parameter that its curve leaves in doubt."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import mdr_core as mdr
-from mdr_core import fit, residuals
-from mdr_core.estimation import minimum
+from mdr_core import estimation, fit, residuals
 
 Array = np.ndarray
 BALL = mdr.Paraboloid(1.0)
@@ -236,5 +236,18 @@ def test_fit_reaches_minimum_to_rounding_error(size: float) -> None:
 
 def test_search_ends_where_residuals_vanish() -> None:
     bounds = np.array([[-np.inf] * 2, [np.inf] * 2])
-    found = minimum(lambda x: (np.zeros_like(x), np.eye(2)), np.ones(2), bounds)
+    found = estimation.minimum(lambda x: (np.zeros_like(x), np.eye(2)), np.ones(2), bounds)
     assert found.tolist() == [1.0, 1.0]
+
+
+def test_step_beyond_the_model_is_not_taken_and_prints_nothing(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def model(x: Array) -> tuple[Array, Array]:
+        return x - 1.0, np.full((1, 1), 1.0 if x[0] < 0.5 else np.nan)
+
+    stopped = SimpleNamespace(x=np.zeros(1))
+    monkeypatch.setattr(estimation, "least_squares", lambda *_, **__: stopped)
+    found = estimation.minimum(model, np.zeros(1), np.array([[-np.inf], [np.inf]]))
+    assert found.tolist() == [0.0]
+    assert capfd.readouterr() == ("", "")

@@ -288,6 +288,27 @@ def test_interpolated_curve_agrees_with_the_equation(profile: Profile) -> None:
     assert stiffness == pytest.approx(exact.normal_stiffness, rel=0, abs=1e-7 * largest[1])
 
 
+@pytest.mark.parametrize("exponent", [0.05, 0.1, 0.2, 0.5, 2.0, 20.0, 40.0, 60.0, 100.0])
+def test_error_of_the_interpolated_curve_covers_all_powers(exponent: float) -> None:
+    profile, sample = Power(1.0, exponent), Layer(0.3, "bonded", 0.5)
+    end = float(normal.solve(profile, 1.0, contact_radius=0.6).indentation_depth)
+    curve = layer.DepthCurve.up_to(profile, sample, end)
+    depth = end * np.append(np.linspace(0.02, 1.0, 50), np.geomspace(1e-6, 0.01, 10))
+    exact = layer.solve(profile, Material(1.0, layer=sample), indentation_depth=depth)
+    missed = curve(depth)[0] - exact.normal_force
+    assert np.abs(missed).max() <= curve.error * exact.normal_force.max()
+    assert curve.error < 1e-4
+
+
+def test_contact_of_a_needle_is_that_of_a_half_space() -> None:
+    # Its radius is 1e-120 of the thickness.
+    needle, sample = Power(1.0, 0.05), Layer(1.0, "bonded", 0.4)
+    contact = layer.solve(needle, Material(1.0, layer=sample), indentation_depth=1e-6)
+    thick = normal.solve(needle, 1.0, indentation_depth=1e-6)
+    for name in ("contact_radius", "normal_force", "normal_stiffness"):
+        assert getattr(contact, name) == pytest.approx(getattr(thick, name), rel=1e-12, abs=0)
+
+
 def test_layers_are_rejected_where_they_do_not_combine() -> None:
     material = _material(1, BONDED, 0.3)
     for solve in (normal.solve,):

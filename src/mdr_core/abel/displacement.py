@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.abel.two_root import Weight
-from mdr_core.doubles import LARGEST
+from mdr_core.doubles import LARGEST, LOG_RANGE
 from mdr_core.quadrature import integrate, reach_of_power
 from mdr_core.typing import Array, Indices
 
@@ -160,7 +160,7 @@ def _branch(
         # -y = tan(alpha/2), so that the powers rise with y.
         run = 2 / (1 + y * y)
         s, root = s_r[index] * (run - 1), s_r[index] * (-y * run)
-        x = np.sqrt(base * base + s * s)
+        x = np.hypot(base, s)
         slope = branch.weight(x, s) * root * run
         return np.array([slope * kernel(x, root) for kernel in kernels])
 
@@ -173,12 +173,12 @@ def _branch(
         scale = base or 1.0
         upper, lower = (change(end[index] / scale) for end in (split, s_low))
     if base == 0:
-        lower = np.maximum(lower, upper - reach_of_power(branch.tip))
+        lower = np.maximum(np.maximum(lower, upper - reach_of_power(branch.tip)), -LOG_RANGE)
     far = s_r[index]
 
     def below(y: Array, index: Indices) -> Array:
         s, run = (base * np.sinh(y), base * np.cosh(y)) if base > 0 else (np.exp(y), np.exp(y))
-        x = np.sqrt(base * base + s * s)
+        x = np.hypot(base, s)
         root = np.sqrt((far[index] - s) * (far[index] + s))
         slope = branch.weight(x, s) * run
         return np.array([slope * kernel(x, root) for kernel in kernels])
