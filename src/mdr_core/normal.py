@@ -87,6 +87,8 @@ class NormalContact(validity.ResultsOverLoads):
     def mean_pressure(self) -> Array:
         """F_N / (pi a^2) [pressure]; at zero load its limit, which may be infinite."""
         area = np.pi * (self.contact_radius * self.contact_radius)
+        if extremes(area)[0] > 0:
+            return self.normal_force / area
         limit = np.multiply(self.e_star, self.profile.tip_pressure)
         return where(area > 0, self.normal_force / where(area > 0, area, 1.0), limit)
 

@@ -87,14 +87,17 @@ class TangentialContact(validity.ResultsOverLoads):
     def tangential_force(self) -> Array:
         """F_x = mu [F_N(a) - F_N(c)] [force]. Source: mdr-5, Eq. (5.19)."""
         partial = self._over_annulus(equivalent_1d.force_step, 1.0)
-        return self._signed(where(self.full_slip, self.limiting_force, partial))
+        if some(self.full_slip):
+            partial = where(self.full_slip, self.limiting_force, partial)
+        return self._signed(partial)
 
     @cached_property
     def tangential_displacement(self) -> Array:
         """u_x = mu (E*/G*) [d(a) - d(c)] [length]. Source: mdr-5, Eqs. (5.20), (5.33)."""
         partial = self._over_annulus(equivalent_1d.depth_step, self.g_star)
-        beyond = self._full_slip_displacement + self.excess
-        return self._signed(where(self.full_slip, beyond, partial))
+        if some(self.full_slip):
+            partial = where(self.full_slip, self._full_slip_displacement, partial) + self.excess
+        return self._signed(partial)
 
     def _over_annulus(self, step: _Step, divisor: Parameter) -> Array:
         """Step of depth or force over the annulus, times mu E*/divisor."""
@@ -126,7 +129,7 @@ class TangentialContact(validity.ResultsOverLoads):
             # Rounding errors may lead to c > a. Without slip c and a are bit-identical.
             a = self.normal.contact_radius
             c = where(self.width > 0, np.minimum(c, a), a)
-        return where(self.full_slip, 0.0, c)
+        return where(self.full_slip, 0.0, c) if some(self.full_slip) else c
 
     @cached_property
     def tangential_stiffness(self) -> Array:
