@@ -21,10 +21,9 @@ from mdr_core.typing import Array
 # Polynomials over the contact radius between two breaks of the profile, and one more for each a/h.
 _COUNT, _MORE = 20, 3
 # Knots of the spline between two breaks.
-_KNOTS = 401
-# Error of the spline over its difference from one of half as many knots: 1/16 where the force is
-# smooth, and 1/4 next to the tip of a blunt power; with room.
-_PART: Final = 0.3
+_KNOTS = 801
+# Error of the spline over its difference from one of half as many knots, 1/16 with room.
+_PART: Final = 0.1
 # Least z: the force there is below rounding error, and the slope still a quotient of two numbers.
 _LEAST: Final = 1e-8
 
@@ -92,9 +91,9 @@ class DepthCurve:
         """
         shares, depths, splines, errors = np.linspace(0.0, 1.0, _KNOTS), [0.0], [], []
         for k, (low, high) in enumerate(pairwise(self._edges)):
-            # Knots at even steps of z, on sharp tips too.
+            # Knots in z^(1/2), which resolve the force at small depths and under sharp tips.
             first, last = self.profile.depth(np.array([low, high]))
-            even = np.minimum(first + (last - first) * shares**2, last)
+            even = np.minimum(first + (last - first) * shares**4, last)
             s = np.clip(self.profile.coordinate_from_depth(even), low, high)
             modes = chebvander(2 * _share(s, low, high) - 1, len(self._ratios) - 1)
             depth, force, stiffness = self._ratios[..., k].T @ modes.T * np.array(self._plain(s))
