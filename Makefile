@@ -24,7 +24,7 @@ unexport PYTHONDONTWRITEBYTECODE
 run: .venv/runtime
 	@exec $(BIN)/python -m mdr_command serve --host $(HOST) --port $(PORT)
 
-# Two tiers: every guard of correctness, about five minutes on two cores; and the long tier, with
+# Two tiers: every guard of correctness, about three minutes on two cores; and the long tier, with
 # processes, the browser, killed sweeps and regenerated references.
 test: .venv/development
 	$(BIN)/python -m pytest --numprocesses logical --dist worksteal -m "not long"
