@@ -108,9 +108,17 @@ def test_limits_of_the_model_are_shown_in_one_line(visit: Visit) -> None:
     expected = (
         rf"Within 1 %: adhesion below {work:.2g} N/m, "
         rf"tangential force below {1 - 0.98**3:.2g} µF_N, thickness above [\d.]+ mm, "
-        rf"yield strength above {strength:g} MPa[.]"
+        rf"yield strength above {strength:g} MPa [(]body 1 has 250 MPa: it yields[)][.]"
     )
     assert re.fullmatch(expected, line), line
+    # Of two bodies the weaker one whose strength is known is named, and no rigid one.
+    for case, named in (
+        ("e1=2.07e11&nu1=0.3&e2=7e10&nu2=0.33", "body 2 has 276 MPa: it yields"),
+        ("e1=rigid&e2=2.07e11&nu2=0.3", "MPa."),
+    ):
+        visit.open(f"?kind=paraboloid&radius=0.01&load=100&ul=mm&up=MPa&{case}")
+        assert named in visit.page.locator("#accuracy p").first.inner_text()
+    visit.open("?kind=paraboloid&radius=0.01&load=100&ul=mm&up=MPa")
     # Johnson, section 4.2: 0.31 p_0 at the depth 0.48 a.
     p_0 = 1.5 * 100 / (math.pi * a**2) / 1e6
     axis = visit.page.locator("#accuracy p").nth(1).inner_text()

@@ -1,6 +1,7 @@
 // Results of a contact that is pressed, with and without adhesion.
 
 import { basics, hasLayer, RIGID } from "./inputs.js";
+import { strengthOf } from "./materials.js";
 import { fieldsOf, marker, normalForce, numbersOf, pressureChart, relationChart, single } from "./parts.js";
 import { quantity } from "./units.js";
 
@@ -77,6 +78,13 @@ const LIMITED = {
   yield: ["yield strength", "pressure"],
 };
 
+/** Return which body yields, if a strength of the list or as given is less than the required one. */
+function yieldWords(required, inputs) {
+  const strengths = [1, 2].map((i) => [inputs[`e${i}`] === RIGID ? Infinity : strengthOf(inputs, i) ?? Infinity, i]);
+  const [[strength, body]] = strengths.sort(([first], [second]) => first - second || 0);
+  return strength < required ? ` (body ${body} has ${quantity(strength, "pressure", inputs, 3)}: it yields)` : "";
+}
+
 /**
  * Return a sentence with the limits up to which the effects that the model leaves out change the
  * results of the last load by no more than a relative tolerance, or nothing without a load. The
@@ -88,7 +96,8 @@ export function limitWords({ holds_while: limits, normal_force: forces }, within
     const [[label, dimension], value] = [LIMITED[effect], (below ?? above).at(-1)];
     const isShare = effect === "slip";
     const size = quantity(isShare ? value / force : value, dimension, inputs, 2);
-    return `${label} ${below ? "below" : "above"} ${size}${isShare ? " µF_N" : ""}`;
+    const yields = effect === "yield" ? yieldWords(value, inputs) : "";
+    return `${label} ${below ? "below" : "above"} ${size}${isShare ? " µF_N" : ""}${yields}`;
   });
   return force > 0 ? `Within ${100 * within} %: ${words.join(", ")}.` : "";
 }
