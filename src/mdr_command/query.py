@@ -194,10 +194,11 @@ def _curve(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
     curve = read_curve(arguments.file, [unit or None for unit in units])
     used = np.ones(curve.normal_force.size, dtype=bool)
     if curve.segments and "segment" in given and "drift" not in given:
-        used = np.array(curve.segments) == given.pop("segment")
-        if not used.any():
-            kinds = ", ".join(dict.fromkeys(curve.segments))
-            raise InputError(("segment",), f"must be one of the segments in the file: {kinds}")
+        branches = [kind for kind in dict.fromkeys(curve.segments) if kind != "hold"]
+        if (wanted := given.pop("segment")) not in branches:
+            detail = f"must be one of the segments in the file: {', '.join(branches)}"
+            raise InputError(("segment",), detail)
+        used = np.array(curve.segments) == wanted
     lists = zip(MeasuredCurve._fields, curve[:3], strict=False)
     return {name: values[used].tolist() for name, values in lists if values is not None}
 

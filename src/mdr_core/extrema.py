@@ -67,7 +67,7 @@ def largest_stress(
     infinite, known = _infinite(profile, edge, loaded, slip), full(nan, edge)
     if not slip:
         falls = profile.falls_from_axis(edge)
-        if every(falls):
+        if every(falls & ~infinite):
             return where(loaded, profile.axis_stress(edge), 0.0)
         known = _of_similar(profile, edge)
         if some(falls):

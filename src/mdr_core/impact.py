@@ -25,12 +25,11 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array
 from mdr_core.validation import (
+    FINITE,
     POSITIVE,
-    only_one,
+    as_numbers,
     reject,
-    require_finite,
     require_inside,
-    require_not_negative,
     require_single_positive,
     require_tolerance,
 )
@@ -238,12 +237,16 @@ def solve(
 
 def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> tuple[Array, ...]:
     """Return the velocities in their common shape; raise InputError if they are invalid."""
-    _, speeds = only_one((), {"normal_velocity": normal_velocity})
-    _, along = only_one((), {"tangential_velocity": tangential_velocity})
-    require_not_negative(("normal_velocity",), speeds)
-    require_finite(("tangential_velocity",), along)
-    detail = f"{POSITIVE} and finite: approach is positive"
-    reject(("normal_velocity",), speeds, speeds <= 0, detail)
+    speeds = as_numbers(("normal_velocity",), normal_velocity)
+    along = as_numbers(("tangential_velocity",), tangential_velocity)
+    approaches = (speeds > 0) & np.isfinite(speeds)
+    for name, values, good, detail in (
+        ("normal_velocity", speeds, approaches, f"{POSITIVE} and finite: approach is positive"),
+        ("tangential_velocity", along, np.isfinite(along), FINITE),
+    ):
+        if not values.size:
+            raise InputError((name,), "at least one value is needed")
+        reject((name,), values, ~good, detail)
     try:
         return np.broadcast_arrays(speeds, along)
     except ValueError:
@@ -292,6 +295,9 @@ def _refined(scene: _Scene, rtol: float) -> tuple[Array, bool, float]:
         if len(solved) > 1:
             speed, mass = max(abs(before), abs(fine[0])) or 1.0, scene.tangential_mass
             energy = mass * speed**2 / 2
+            if not energy > 0:
+                detail = "is too small for its energy in double precision: change the units"
+                raise InputError(("tangential_velocity",), detail)
             change = fine - solved[-2]
             relative = np.abs(change / [speed, fine[1], mass * speed, energy])
             error = max(error / 4, float(relative.max()))

@@ -7,7 +7,8 @@ from typing import Final
 import numpy as np
 
 from mdr_core.doubles import EPS, LARGEST, ROUNDING, TINY
-from mdr_core.elementwise import every, where
+from mdr_core.elementwise import every, some, where
+from mdr_core.errors import DefectError
 from mdr_core.typing import Array
 
 Function = Callable[[Array], Array]
@@ -47,6 +48,10 @@ def invert(function: Sloped, target: Array, start: Array, low: Array, high: Arra
     -------
     Array of the common shape. It is zero or infinite where the root is not representable, and NaN
     where a value of the function is not.
+
+    Raises
+    ------
+    DefectError : the iteration does not converge.
     """
     positive = target > 0
     goal = where(positive, target, 1.0)
@@ -87,6 +92,8 @@ def invert(function: Sloped, target: Array, start: Array, low: Array, high: Arra
             # The rounding error of the middle itself is up to two spacings of doubles on either
             # side.
             settling = last | (high - low <= where(high < inf, 2 * EPS * high, 0.0))
+    if some(known & ~done):
+        raise DefectError("the inverse of a function did not converge")
     root = where(positive, np.maximum(s, root_at_zero), root_at_zero)
     return where(done, root, np.nan)
 

@@ -100,7 +100,7 @@ class Material:
 
 
 UNKNOWN: Final = Material(1.0)
-"""Bodies of which nothing is known: the contact has their E*."""
+"""Bodies of which nothing is known; the contact, and not this material, has their E*."""
 # One number, or an array over the cases of a sweep.
 _Number = TypeVar("_Number", bound=Parameter)
 

@@ -23,6 +23,7 @@ from mdr_core import (
     RoundedPunch,
     Series,
     Sphere,
+    SphericalTipCone,
     Tabulated,
     TruncatedCone,
     fields,
@@ -298,6 +299,16 @@ def test_error_of_the_interpolated_curve_covers_all_powers(exponent: float) -> N
     missed = curve(depth)[0] - exact.normal_force
     assert np.abs(missed).max() <= curve.error * exact.normal_force.max()
     assert curve.error < 1e-4
+
+
+@pytest.mark.parametrize("part", [1e-2, 1e-5, 1e-9])
+def test_curve_may_end_just_beyond_a_break(part: float) -> None:
+    profile, sample = SphericalTipCone(1e-3, 1.0), Layer(1e-3, BONDED, 0.3)
+    curve = layer.DepthCurve(profile, sample, profile.breaks[0] * (1 + part))
+    force, _ = curve(np.array([curve.deepest / 2, curve.deepest]))
+    material = Material(1.0, layer=sample)
+    exact = layer.solve(profile, material, indentation_depth=[curve.deepest / 2, curve.deepest])
+    assert force == pytest.approx(exact.normal_force, rel=1e-8, abs=0)
 
 
 def test_contact_of_a_needle_is_that_of_a_half_space() -> None:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mdr_core import fields, fit, history, normal, subsurface, tangential, wear
+from mdr_core import fields, fit, history, impact, normal, subsurface, tangential, wear
 from mdr_core.errors import InputError
 from mdr_core.materials import RIGID, Body, Material, from_bodies
 from mdr_core.profiles import (
@@ -43,6 +43,12 @@ def normal_contact(profile: Any, **load: Any) -> Callable[[], Any]:
 
 def tangential_contact(contact: normal.NormalContact = HERTZ, **load: Any) -> Callable[[], Any]:
     return lambda: tangential.solve(contact, 1.0, 0.5, **load)
+
+
+def hit(**velocities: Any) -> impact.Impact:
+    given = {"normal_velocity": 1.0, "tangential_velocity": 1.0} | velocities
+    masses = {"normal_mass": 1.0, "tangential_mass": 0.3}
+    return impact.solve(Paraboloid(0.01), 1e9, 8e8, 0.1, **masses, **given)
 
 
 def beneath(radius: float) -> Callable[[], Any]:
@@ -80,6 +86,22 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
         "does not agree",
     ),
     (lambda: normal.solve(Cone(1.0), 0.0, normal_force=1.0), ("material", "e_star"), "positive"),
+    (
+        lambda: fit.solve(
+            Cone(1.0),
+            indentation_depth=[0.0, 1.0, 2.0],
+            normal_force=[0.0, 1.0, 4.0],
+            time=[0.0, 1.0, 2.0],
+            drift_rate=0.1,
+            drift_rate_error=[1.0, 2.0],
+        ),
+        ("drift_rate_error",),
+        "a single number",
+    ),
+    (lambda: hit(normal_velocity=None), ("normal_velocity",), "must be a number"),
+    (lambda: hit(normal_velocity=-1.0), ("normal_velocity",), "must be positive"),
+    (lambda: hit(normal_velocity=[]), ("normal_velocity",), "at least one value"),
+    (lambda: hit(tangential_velocity=1e-165), ("tangential_velocity",), "change the units"),
     (lambda: Material(1.0, 0.0), ("material", "g_star"), "positive"),
     # Numbers beneath a mask are no input.
     (normal_contact(Cone(1.0), normal_force=MASKED), ("load", "normal_force", 1), "masked"),

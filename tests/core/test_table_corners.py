@@ -248,3 +248,13 @@ def test_work_of_friction_where_noise_leaves_a_flat(part: float) -> None:
     expected = 2 * 0.3**2 * float(np.sum(half * weights * below * above))
     # Next to no slip the stick radius has fewer digits.
     assert float(found.dissipated_energy) == pytest.approx(expected, rel=1e-6, abs=0)
+
+
+@pytest.mark.parametrize("place", [2.5e-4, 3e-4, 4e-4])
+def test_pressure_is_infinite_from_a_declared_corner_on(place: float) -> None:
+    # The corners lie between the points or on them.
+    r = np.linspace(0.0, 1e-3, 40)
+    table = Tabulated(r, r**2 / 0.02 + 0.1 * np.maximum(r - place, 0.0), breaks=[place])
+    for radius in (place * (1 + 1e-3), [place * (1 - 1e-3), place * (1 + 1e-3)]):
+        largest = solve(table, 1e9, contact_radius=radius).maximum_pressure
+        assert np.isinf(largest).tolist() == np.greater(radius, place).tolist()

@@ -208,7 +208,10 @@ def _drift(
     if rate is not None:
         if drift is not None:
             raise InputError(("drift_rate",), "and drift exclude each other: give one of them")
-        known = Drift(single(("drift_rate",), rate), single(("drift_rate_error",), error or 0.0))
+        known = Drift(
+            single(("drift_rate",), rate),
+            single(("drift_rate_error",), 0.0 if error is None else error),
+        )
         require_finite(("drift_rate",), np.asarray(known.rate))
         require_not_negative(("drift_rate_error",), np.asarray(known.error))
         return known

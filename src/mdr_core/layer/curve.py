@@ -20,8 +20,8 @@ from mdr_core.typing import Array
 
 # Polynomials over the contact radius between two breaks of the profile, and one more for each a/h.
 _COUNT, _MORE = 20, 3
-# Knots of the spline between two breaks.
-_KNOTS = 801
+# Knots of the spline between two breaks, an odd number: every second one holds both ends.
+_KNOTS: Final = 801
 # Error of the spline over its difference from one of half as many knots, 1/16 with room.
 _PART: Final = 0.1
 # Least z: the force there is below rounding error, and the slope still a quotient of two numbers.
@@ -70,7 +70,7 @@ class DepthCurve:
         found = states(self.profile, self.layer, s.ravel())
         own = found.depth, found.force, found.stiffness
         # Next to the tip a quantity may be zero in double precision; the layer is as a half-space.
-        with np.errstate(invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore"):
             ratios = [
                 np.where(of > 0, part.reshape(s.shape) / of, 1.0)
                 for part, of in zip(own, self._plain(s), strict=True)
@@ -91,9 +91,10 @@ class DepthCurve:
         """
         shares, depths, splines, errors = np.linspace(0.0, 1.0, _KNOTS), [0.0], [], []
         for k, (low, high) in enumerate(pairwise(self._edges)):
-            # Knots in z^(1/2), which resolve the force at small depths and under sharp tips.
+            # Knots in z^(1/2) next to the tip, which resolve small depths and sharp powers; in z
+            # beyond a break, where a smaller step of the depth would be its rounding error.
             first, last = self.profile.depth(np.array([low, high]))
-            even = np.minimum(first + (last - first) * shares**4, last)
+            even = np.minimum(first + (last - first) * shares ** (2 if low else 4), last)
             s = np.clip(self.profile.coordinate_from_depth(even), low, high)
             modes = chebvander(2 * _share(s, low, high) - 1, len(self._ratios) - 1)
             depth, force, stiffness = self._ratios[..., k].T @ modes.T * np.array(self._plain(s))

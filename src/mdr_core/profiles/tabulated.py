@@ -375,8 +375,10 @@ class Tabulated(Profile):
         # Where h' > 0 on the axis, the pressure rises by no more than this rounding error.
         rise = -np.log(_ROUNDING) / 2 * max(tip, 0.0) * x
         rise += np.maximum.accumulate(np.maximum(beyond, 0.0)) * np.square(x)
-        ends = (slope <= 0) | (rise > slope / x) | (x >= min(self._breaks, default=np.inf))
-        return float(x[ends].min(initial=np.inf))
+        ends = (slope <= 0) | (rise > slope / x)
+        # The sample before the first one at which the pressure may not fall.
+        known = np.append(0.0, x)[ends.argmax()] if ends.any() else np.inf
+        return float(min(known, np.inf, *self._breaks))
 
     def axis_stress(self, coordinate: Array) -> Array:
         stress = self._slope_integral(np.reciprocal, coordinate) / np.pi
