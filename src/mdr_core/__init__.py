@@ -34,7 +34,7 @@ from mdr_core import (
 from mdr_core.errors import AccuracyError, DefectError, InputError, MDRError, Notice
 from mdr_core.history.slip_kernel import __file__ as _kernel
 from mdr_core.materials import RIGID, Body, Layer, Material, from_bodies
-from mdr_core.profiles import *  # noqa: F403, every kind
+from mdr_core.profiles import *  # noqa: F403, the kinds are listed in `profiles.__all__` alone
 from mdr_core.table_reader import read_curve, read_table
 
 __version__: Final = "0.1.0"

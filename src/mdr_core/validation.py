@@ -104,7 +104,13 @@ def first_index(bad: Flags) -> tuple[int, ...]:
 
 
 def reject(path: tuple[str | int, ...], given: Array, bad: Flags, detail: str) -> None:
-    """Raise InputError at the first of the given numbers that is bad."""
+    """Raise InputError at the first of the given numbers that is bad.
+
+    Parameters
+    ----------
+    path, given : the argument and its numbers.
+    bad, detail : True for numbers that are bad, and the reason.
+    """
     if some(bad):
         raise InputError((*path, *(first_index(bad) if given.ndim else ())), detail, bad)
 

@@ -378,7 +378,7 @@ class Tabulated(Profile):
         ends = (slope <= 0) | (rise > slope / x)
         # The sample before the first one at which the pressure may not fall.
         known = np.append(0.0, x)[ends.argmax()] if ends.any() else np.inf
-        return float(min(known, np.inf, *self._breaks))
+        return float(min([known, *self._breaks]))
 
     def axis_stress(self, coordinate: Array) -> Array:
         stress = self._slope_integral(np.reciprocal, coordinate) / np.pi
