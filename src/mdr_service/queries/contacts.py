@@ -78,7 +78,10 @@ def profile(model: Profile) -> profiles.Profile:
         given["slope"] = profiles.slope_of_half_angle(half_angle)
     if model.kind == "series":
         given["terms"] = tuple(profiles.PowerTerm(**vars(term)) for term in model.terms)
-    return _by_parameters(model.kind, **given)
+    # Parameters that are arrays over the cases of a sweep cannot be keys of a cache.
+    is_swept = any(isinstance(value, np.ndarray) for value in given.values())
+    make = _by_parameters.__wrapped__ if is_swept else _by_parameters
+    return make(model.kind, **given)
 
 
 # The cache pays off, because fitting a table takes up to a hundred times as long as a contact, and
