@@ -222,9 +222,10 @@ class NormalContact(validity.ResultsOverLoads):
     def findings(self) -> list[validity.Finding]:
         """Findings that depend only on the profile and the loads."""
         sharp = "mean_pressure is infinite at zero load: the tip is sharper than a cone"
+        infinite = "maximum_pressure is infinite, at radius {}"
         found = [
             validity.Finding("singular", np.isinf(self.mean_pressure), lambda: sharp),
-            validity.infinite_maximum(self),
+            validity.infinite_pressure(self, "singular", infinite),
         ]
         if self.material.layer is not None:
             found.append(validity.layer_strain(self.indentation_depth, self.material.layer))

@@ -320,18 +320,16 @@ def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Fin
             return False
         return infinite_deviator(profile, radius, material.poissons_ratios, slips_from)
 
-    def places() -> str:
-        return (
-            f"the elastic pressure is infinite at radius {_infinite_radii(contact, yields)}: "
-            "a real material yields there under any load; round the tip or edge"
-        )
-
     found = [_above_limit("half_space", errors.force, message, instead)]
     if material.body_thickness is not None:
         found.append(_thin_body(contact))
     if radii is not None:
         found.append(_large_strain(contact))
-    return [*found, Finding("plastic", _infinite(contact, yields), places, instead="rounded_tip")]
+    text = (
+        "the elastic pressure is infinite at radius {}: a real material yields there under any "
+        "load; round the tip or edge"
+    )
+    return [*found, infinite_pressure(contact, "plastic", text, yields, "rounded_tip")]
 
 
 def _thin_body(contact: LoadedContact) -> Finding:
@@ -402,17 +400,33 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Findi
     return Finding("impossible_moduli", impossible, unphysical, value, _MODULI[value > 1])
 
 
-def infinite_maximum(contact: LoadedContact) -> Finding:
-    """Return `singular`: loads under which the pressure is infinite somewhere."""
+def infinite_pressure(
+    contact: LoadedContact,
+    code: str,
+    text: str,
+    counts: Callable[[Parameter], Flags | bool] = lambda _radius: True,
+    instead: Remedy | None = None,
+) -> Finding:
+    """Return the finding of loads under which the pressure is infinite at a radius that counts.
+
+    Parameters
+    ----------
+    contact : contact with or without friction.
+    code, text : of the warning; braces in the text stand for the radii.
+    counts : True in the cases in which a radius counts, all by default.
+    instead : see `Notice`.
+    """
+    where, radii = contact.contact_radius < 0, []
+    for b in contact.profile.infinite_pressure_radii:
+        here = contact.loaded & (b <= contact.contact_radius) & counts(b)
+        where = where | here
+        if some(here):
+            radii.append(extremes(b)[0])
 
     def message() -> str:
-        return f"maximum_pressure is infinite, at radius {_infinite_radii(contact, _always)}"
+        return text.format(listed([f"{b:.12g}" for b in radii]))
 
-    return Finding("singular", _infinite(contact, _always), message)
-
-
-def _always(_radius: Parameter) -> bool:
-    return True
+    return Finding(code, where, message, instead=instead)
 
 
 def infinite_deviator(
@@ -436,22 +450,6 @@ def infinite_deviator(
     if profile.is_flat_punch or not poissons_ratios or min(poissons_ratios) < _INCOMPRESSIBLE:
         return number(1.0) > 0
     return np.isinf(profile.tip_pressure) | (radius >= slips_from)
-
-
-def _infinite(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool]) -> Flags:
-    """Return whether the pressure is infinite at a radius that counts."""
-    found = contact.contact_radius < 0
-    for b in contact.profile.infinite_pressure_radii:
-        found = found | (contact.loaded & (b <= contact.contact_radius) & counts(b))
-    return found
-
-
-def _infinite_radii(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool]) -> str:
-    """Radii of infinite pressure in the largest contact that count in some case, as text."""
-    largest = extremes(contact.contact_radius)[1]
-    radii = contact.profile.infinite_pressure_radii
-    least = (extremes(b)[0] for b in radii if some(counts(b)))
-    return listed([f"{b:.12g}" for b in least if b <= largest])
 
 
 def listed(names: Sequence[str]) -> str:

@@ -86,6 +86,14 @@ def test_errors_name_the_curve_or_the_option(
     assert message in capsys.readouterr().err
 
 
+def test_names_of_units_in_a_picture_are_the_units_option(tmp_path: Path, capsys: Capture) -> None:
+    curve = tmp_path / "curve.csv"
+    curve.write_text("d [nm];F [N]\n0;0\n1;1\n2;3\n", "utf-8")
+    given = ["fit", str(curve), *FIT_OPTIONS[:4], "--format", "svg", "--units", "mm"]
+    assert main(given) == 2
+    assert capsys.readouterr().err.startswith("mdr fit: --units: must be three names")
+
+
 def test_drift_rate_option_uses_times_of_file(tmp_path: Path) -> None:
     curve, result = tmp_path / "curve.csv", tmp_path / "fit.json"
     rows = "".join(f"{i / 60:.9f};{11 * i - 10};{force}\n" for i, force in enumerate(FORCES))
