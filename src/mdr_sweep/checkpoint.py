@@ -20,6 +20,7 @@ from typing import Any, Final
 import pyarrow as pa
 
 from mdr_sweep.spec import UsageError
+from mdr_sweep.tables import from_bytes, to_bytes
 
 _UNFINISHED: Final = ".unfinished"
 # Index and digest of a chunk.
@@ -80,10 +81,7 @@ class Checkpoint:
 
     def put(self, index: int, batch: pa.RecordBatch) -> None:
         """Store a completed chunk."""
-        buffer = pa.BufferOutputStream()
-        with pa.ipc.new_file(buffer, batch.schema) as writer:
-            writer.write_batch(batch)
-        content = buffer.getvalue().to_pybytes()
+        content = to_bytes(batch)
         name = f"{index:012d}-{self._digest(index, content)}.arrow"
         with self._whole(self.folder / name) as path:
             path.write_bytes(content)
@@ -95,7 +93,7 @@ class Checkpoint:
             index, content = next(stored, (count, b""))
             if index != expected:
                 raise _damaged(self.folder)
-            yield pa.ipc.open_file(content).get_batch(0)
+            yield from_bytes(content)
 
     def _stored(self) -> Iterator[tuple[int, bytes]]:
         """Yield index and content of the stored chunks in their order."""

@@ -143,6 +143,20 @@ def regrouped(batches: Iterable[pa.RecordBatch], rows: int) -> Iterator[pa.Recor
         yield concat_batches(held)
 
 
+def to_bytes(batch: pa.RecordBatch) -> bytes:
+    """Return a batch as an Arrow stream; pickling a slice would store the whole array."""
+    sink = pa.BufferOutputStream()
+    with pa.ipc.new_stream(sink, batch.schema) as writer:
+        writer.write_batch(batch)
+    return sink.getvalue().to_pybytes()
+
+
+def from_bytes(content: bytes) -> pa.RecordBatch:
+    """Return the batch of an Arrow stream."""
+    with pa.ipc.open_stream(content) as reader:
+        return reader.read_next_batch()
+
+
 def write(
     sink: Any, suffix: str, batches: Iterable[pa.RecordBatch], provenance: Mapping[str, Any]
 ) -> None:

@@ -77,10 +77,10 @@ def _groups(columns: Columns, size: int) -> Iterator[Rows]:
     """Yield groups of rows with equal fields, and equal values of those that are not arrays."""
     keys: list[list[Any]] = [[None] * size]
     for name, column in columns.items():
-        if _is_array(name, column):
-            keys.append(column.given.tolist())
-        else:
+        if not _is_array(name, column):
             keys.append(list(map(repr, column.cells.to_pylist())))
+        elif not column.given.all():
+            keys.append(column.given.tolist())
     groups: dict[Any, list[int]] = {}
     for row, key in enumerate(zip(*keys, strict=True)):
         groups.setdefault(key, []).append(row)
