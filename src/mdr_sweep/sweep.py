@@ -19,7 +19,7 @@ from mdr_service.problems import MAX_ERRORS
 from mdr_service.schemas.flat import flat, nested
 from mdr_sweep import resources, scheduler, vectorized
 from mdr_sweep.checkpoint import Checkpoint
-from mdr_sweep.request_columns import field
+from mdr_sweep.request_columns import field, fits
 from mdr_sweep.spec import (
     ERROR,
     ONLY_IF_NAMED,
@@ -112,8 +112,8 @@ def specified(arguments: Namespace) -> tuple[Spec, Source]:
     listed = [name for name, value in constants.items() if isinstance(value, list)]
     for name, kind in (kinds | dict.fromkeys(listed, pa.list_(pa.float64()))).items():
         own = field(query, name)
-        if own and not own.fits(kind):
-            raise UsageError(f"{name} holds values of type {kind}; a case has one {own.type}")
+        if own and not fits(own, kind):
+            raise UsageError(f"{name} holds values of type {kind}; a case has one {own['type']}")
     return spec, source
 
 

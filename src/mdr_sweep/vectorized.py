@@ -20,10 +20,9 @@ from mdr_service.queries import QUERIES
 from mdr_service.queries.contacts import yields
 from mdr_service.schemas.contacts import Query
 from mdr_service.schemas.flat import nested
-from mdr_sweep.request_columns import Column, Values, read_columns
+from mdr_sweep.request_columns import Column, Rows, Values, read_columns
 from mdr_sweep.spec import ERROR, TEXTS, WARNING, Spec
 
-Rows = NDArray[np.intp]
 Results = dict[str, NDArray[Any]]
 Columns = Mapping[str, Column]
 Contact = NormalContact | TangentialContact
@@ -70,7 +69,7 @@ def solve(spec: Spec, batch: pa.RecordBatch) -> pa.RecordBatch:
 def _is_array(name: str, column: Column) -> bool:
     """Return True if a field can be an array over the cases of one call."""
     in_list = name.startswith(("profile.terms.", "profile.radii."))
-    return column.field.type == "number" and name.startswith(_ARRAYS) and not in_list
+    return column.schema["type"] == "number" and name.startswith(_ARRAYS) and not in_list
 
 
 def _groups(columns: Columns, size: int) -> Iterator[Rows]:
@@ -100,7 +99,7 @@ def _solve_group(spec: Spec, columns: Columns, rows: Rows) -> tuple[Rows, Result
         if _is_array(name, column) and column.given[rows[0]]
     }
     for column in swept.values():
-        rows = rows[column.field.accepts(column.values[rows])]
+        rows = rows[column.accepts(rows)]
     while rows.size:
         try:
             query = _validated(spec, _request(spec, columns, int(rows[0])))
