@@ -9,7 +9,6 @@ written.
 import fcntl
 import json
 import os
-import re
 import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -23,8 +22,8 @@ from mdr_sweep.spec import UsageError
 from mdr_sweep.tables import from_bytes, to_bytes
 
 _UNFINISHED: Final = ".unfinished"
-# Index and digest of a chunk.
-_CHUNK: Final = re.compile(r"(\d{12})-([0-9a-f]{16})\.arrow")
+_DIGITS: Final = 12
+"""Digits of the index of a chunk in its name."""
 
 
 class Checkpoint:
@@ -82,8 +81,7 @@ class Checkpoint:
     def put(self, index: int, batch: pa.RecordBatch) -> None:
         """Store a completed chunk."""
         content = to_bytes(batch)
-        name = f"{index:012d}-{self._digest(index, content)}.arrow"
-        with self._whole(self.folder / name) as path:
+        with self._whole(self.folder / self._name(f"{index:0{_DIGITS}}", content)) as path:
             path.write_bytes(content)
 
     def chunks(self, count: int) -> Iterator[pa.RecordBatch]:
@@ -98,13 +96,15 @@ class Checkpoint:
     def _stored(self) -> Iterator[tuple[int, bytes]]:
         """Yield index and content of the stored chunks in their order."""
         for path in sorted(self.folder.glob("*.arrow*")):
-            name, content = _CHUNK.fullmatch(path.name), path.read_bytes()
-            if not name or self._digest(int(name[1]), content) != name[2]:
+            index, content = path.name[:_DIGITS], path.read_bytes()
+            if path.name != self._name(index, content):
                 raise _damaged(path)
-            yield int(name[1]), content
+            yield int(index), content
 
-    def _digest(self, index: int, content: bytes) -> str:
-        return sha256(b"%s %d %s" % (self._sweep.encode(), index, content)).hexdigest()[:16]
+    def _name(self, index: str, content: bytes) -> str:
+        """Return the name of a chunk, with a digest of sweep, index and content."""
+        known = f"{self._sweep} {index} ".encode()
+        return f"{index}-{sha256(known + content).hexdigest()[:16]}.arrow"
 
     @contextmanager
     def result(self) -> Iterator[Path]:
