@@ -111,7 +111,7 @@ def _solve_group(spec: Spec, columns: Columns, rows: Rows) -> tuple[Rows, Result
                 solved, results = _results(spec, query, source, rows.size)
             return rows[solved], {name: values[solved] for name, values in results.items()}
         except InputError as error:
-            rejected = np.ravel(np.asarray(True if error.cases is None else error.cases))
+            rejected = np.ravel(error.cases)
             if rejected.shape != rows.shape or not rejected.any():
                 break
             rows = rows[~rejected]
@@ -122,11 +122,10 @@ def _solve_group(spec: Spec, columns: Columns, rows: Rows) -> tuple[Rows, Result
 
 def _with_arrays(query: Query, swept: Mapping[str, Values]) -> Query:
     """Return a valid request with arrays over the cases in the swept fields."""
-    changes: dict[str, Any] = {}
-    for name, values in swept.items():
-        group, _, field = name.rpartition(".")
-        part = changes.get(group, getattr(query, group)) if group else None
-        changes |= {group: part.model_copy(update={field: values})} if part else {field: values}
+    changes = {
+        name: getattr(query, name).model_copy(update=part) if isinstance(part, dict) else part
+        for name, part in nested(swept).items()
+    }
     return query.model_copy(update=changes)
 
 
@@ -140,12 +139,10 @@ def _results(
     solved = np.array(np.broadcast_to(np.isfinite(contact.mean_pressure), (size,)))
     for name in spec.quantities:
         values: Any = getattr(source if hasattr(type(source), name) else contact, name)
-        if values is None:
-            # These profiles have no data error.
-            values = nan
-        elif name not in TEXTS:
+        if values is not None and name not in TEXTS:
             solved &= np.isfinite(values)
-        results[name] = np.broadcast_to(values, (size,))
+        # Profiles that are not tables have no data error.
+        results[name] = np.broadcast_to(nan if values is None else values, (size,))
     return solved, results
 
 
