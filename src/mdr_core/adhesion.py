@@ -24,13 +24,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
-from mdr_core import validation
+from mdr_core import materials, validation
 from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.elementwise import full, number, some, where
 from mdr_core.equivalent_1d import coordinate_from_radius
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import LEAST_GAP, largest_with
-from mdr_core.materials import UNKNOWN, Material, normal_modulus
+from mdr_core.materials import UNKNOWN, Material
 from mdr_core.normal import CONTROLS, NormalContact
 from mdr_core.profiles import FlatPunch, Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
@@ -397,7 +397,7 @@ def solve(
     validation.require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     validation.require_single_profile(profile.swept)
     material = e_star if isinstance(e_star, Material) else UNKNOWN
-    modulus: Any = normal_modulus(e_star)
+    modulus = materials.modulus("e_star", e_star)
     for field, value in {"e_star": modulus, "work_of_adhesion": work_of_adhesion}.items():
         validation.require_single_positive(("material", field), value)
     loads = (indentation_depth, normal_force, contact_radius)

@@ -2,11 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Final, Literal, TypeVar, get_args
+from typing import Any, Final, Literal, get_args
 
 from mdr_core.errors import InputError
-from mdr_core.typing import Parameter
-from mdr_core.validation import BODIES, require_poissons_ratio, require_positive
+from mdr_core.validation import BODIES, as_positive, require_poissons_ratio, require_positive
 
 RIGID: Final = "rigid"
 Base = Literal["bonded", "frictionless"]
@@ -101,45 +100,36 @@ class Material:
 
 UNKNOWN: Final = Material(1.0)
 """Bodies of which nothing is known; the contact, and not this material, has their E*."""
-# One number, or an array over the cases of a sweep.
-_Number = TypeVar("_Number", bound=Parameter)
+_NEEDED: Final = {
+    "e_star": "is needed: give it, or bodies",
+    "g_star": "is needed with friction: give it, or bodies",
+    "shear_modulus": "is needed for a twist, 1/G = 1/G1 + 1/G2: give it, or bodies",
+}
 
 
-def normal_modulus(e_star: _Number | Material) -> _Number | float:
-    """Return E* [pressure] of a material, or the number itself; raise InputError otherwise.
+def modulus(name: str, given: Any) -> Any:
+    """Return the positive modulus of a material by its name [pressure], or the number or array.
 
-    Its value is not checked. Raises InputError for a layer, with which only `layer.solve` computes.
+    Parameters
+    ----------
+    name : `e_star`, `g_star`, or `shear_modulus`, the G of a twist, which G* does not determine.
+    given : a material, a number, an array, or None.
+
+    Raises
+    ------
+    InputError : no modulus, one that is not positive and finite, or a layer, with which only
+        `layer.solve` computes.
     """
-    if isinstance(e_star, Material) and e_star.layer is not None:
-        raise InputError(("material", "layer"), UNUSABLE)
-    return _modulus("e_star", e_star, "is needed: give it, or bodies")
-
-
-def shear_modulus(g_star: _Number | Material | None) -> _Number | float:
-    """Return G* [pressure] of a material, or the number itself; raise InputError otherwise.
-
-    The value is not checked.
-    """
-    return _modulus("g_star", g_star, "is needed with friction: give it, or bodies")
-
-
-def twist_modulus(shear_modulus: _Number | Material | None) -> _Number | float:
-    """Return the shear modulus G of a twist [pressure], from a material or the number itself.
-
-    The value is not checked. Raises InputError if there is none: G* does not determine it.
-    """
-    detail = "is needed for a twist, 1/G = 1/G1 + 1/G2: give it, or bodies"
-    return _modulus("shear_modulus", shear_modulus, detail)
-
-
-def _modulus(name: str, given: _Number | Material | None, absent: str) -> _Number | float:
-    """Modulus of a material, or the number itself; `absent` is the sentence if there is none."""
-    value: Any = getattr(given, name) if isinstance(given, Material) else given
-    if isinstance(value, Body):
-        absent = "depends on both bodies: combine them by from_bodies([body, other])"
-    if value is None or isinstance(value, Body):
-        raise InputError(("material", name), absent)
-    return value
+    if isinstance(given, Body):
+        detail = "depends on both bodies: combine them by from_bodies([body, other])"
+        raise InputError(("material", name), detail)
+    if isinstance(given, Material):
+        if name == "e_star" and given.layer is not None:
+            raise InputError(("material", "layer"), UNUSABLE)
+        given = getattr(given, name)
+    if given is None:
+        raise InputError(("material", name), _NEEDED[name])
+    return as_positive(("material", name), given)
 
 
 def from_bodies(

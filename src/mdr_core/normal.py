@@ -7,19 +7,18 @@ from typing import ClassVar, Final, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import half_space, validity
+from mdr_core import half_space, materials, validity
 from mdr_core.doubles import ADJACENT, LARGEST, ROUNDING
 from mdr_core.elementwise import broadcast, where
 from mdr_core.equivalent_1d import coordinate_from_radius
 from mdr_core.errors import Notice
 from mdr_core.extrema import coordinate_from_pressure, largest_stress, pressure_and_slope
-from mdr_core.materials import UNKNOWN, Material, normal_modulus
+from mdr_core.materials import UNKNOWN, Material
 from mdr_core.profiles import Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import (
-    as_positive,
     common_shape,
     extremes,
     only_one,
@@ -281,7 +280,7 @@ def solve(
     """
     require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     material = e_star if isinstance(e_star, Material) else UNKNOWN
-    modulus: Parameter = as_positive(("material", "e_star"), normal_modulus(e_star))
+    modulus: Parameter = materials.modulus("e_star", e_star)
     loads = (indentation_depth, normal_force, contact_radius, maximum_pressure)
     names = (*CONTROLS, "maximum_pressure")
     name, load = only_one(("load",), dict(zip(names, loads, strict=True)))
