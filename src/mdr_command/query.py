@@ -280,9 +280,7 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
             renamed = _NAME.sub(
                 lambda each: _flag(each[0]) if each[0] in names else each[0], detail
             )
-            is_text = place in names and names[place].annotation not in NUMBERS
-            said = detail.replace(NOT_NUMBERS, _NOT_NUMBERS) if is_text else renamed
-            parts = [_flag(place), said]
+            parts = [_flag(place), renamed.replace(NOT_NUMBERS, _NOT_NUMBERS)]
         _say(arguments, *parts)
     return _STATUS.get(error.type, ExitStatus.INVALID_INPUT)
 

@@ -175,30 +175,27 @@ def from_bodies(
     parts = [body for body in bodies if isinstance(body, Body)]
     if not parts:
         raise InputError(("material", "bodies"), "at least one body must be elastic")
-    # The factors of 1 - nu^2 are free of cancellation as nu -> -1.
-    compliances = [
-        (1 - body.poissons_ratio) * (1 + body.poissons_ratio) / body.youngs_modulus
-        for body in parts
-    ]
-    normal = sum(compliances)
-    share = compliances[0] / normal if isinstance(bodies[0], Body) else 0.0
-    shear = sum((2 - body.poissons_ratio) / (4 * body.shear_modulus) for body in parts)
-    twist = sum(1 / body.shear_modulus for body in parts)
+    first, second = map(_compliances, bodies)
+    normal, shear, twist, _, total = map(sum, zip(first, second, strict=True))
+    moduli = 1 / normal, 1 / shear, (first[3] - second[3]) / (2 * total)
     ratios = tuple(body.poissons_ratio for body in parts)
-    mismatch = sum(
-        sign * (1 - 2 * body.poissons_ratio) / body.shear_modulus
-        for sign, body in zip((1, -1), bodies, strict=True)
-        if isinstance(body, Body)
-    )
-    total = sum((1 - body.poissons_ratio) / body.shear_modulus for body in parts)
-    moduli = 1 / normal, 1 / shear, mismatch / (2 * total)
     if layer is not None:
         # Of two equal bodies the second one.
-        both = zip(compliances[::-1], ratios[::-1], strict=True)
-        largest, nu = max(both, key=lambda each: each[0])
+        largest, nu = (second[0], ratios[-1]) if second[0] >= first[0] else (first[0], ratios[0])
         if layer.poissons_ratio not in {None, nu}:
             detail = "differs from Poisson's ratio of the more compliant body: leave it out"
             raise InputError(("material", "layer", "poissons_ratio"), detail)
         layer = replace(layer, poissons_ratio=nu, share=largest / normal)
     held = tuple(body.held if isinstance(body, Body) else "contacts" for body in bodies)
+    share = first[0] / normal
     return Material(*moduli, ratios, share, body_thickness, 1 / twist, (held[0], held[1]), layer)
+
+
+def _compliances(body: Body | Literal["rigid"]) -> tuple[float, ...]:
+    """Terms of a body in 1/E*, 1/G* and 1/G of a twist, Dundurs' m, and (1 - nu)/G [1/pressure]."""
+    if not isinstance(body, Body):
+        return (0.0,) * 5
+    nu, shear = body.poissons_ratio, body.shear_modulus
+    # The factors of 1 - nu^2 are free of cancellation as nu -> -1.
+    normal = (1 - nu) * (1 + nu) / body.youngs_modulus
+    return normal, (2 - nu) / (4 * shear), 1 / shear, (1 - 2 * nu) / shear, (1 - nu) / shear
