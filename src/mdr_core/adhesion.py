@@ -444,7 +444,7 @@ def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, 
     """Coordinate and retraction under each load, and the largest number of stable states."""
     profile, states = curve.profile, 1
     if name == "contact_radius":
-        validation.require_positive(("load", name), load)
+        validation.as_positive(("load", name), load)
         at = coordinate_from_radius(profile, load)
         bad = np.asarray(~(curve.excess(_SHARES["indentation_depth"], at) >= -sqrt(ROUNDING)))
         if some(bad):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Final, Literal, get_args
 
 from mdr_core.errors import InputError
-from mdr_core.validation import BODIES, as_positive, require_poissons_ratio, require_positive
+from mdr_core.validation import BODIES, as_positive, require_poissons_ratio
 
 RIGID: Final = "rigid"
 Base = Literal["bonded", "frictionless"]
@@ -35,7 +35,7 @@ class Body:
     def __post_init__(self) -> None:
         if self.held not in get_args(Held):
             raise InputError(("held",), f"must be one of {', '.join(get_args(Held))}")
-        require_positive(("youngs_modulus",), self.youngs_modulus)
+        as_positive(("youngs_modulus",), self.youngs_modulus)
         require_poissons_ratio(("poissons_ratio",), self.poissons_ratio)
 
     @property
@@ -61,7 +61,7 @@ class Layer:
         place = ("material", "layer")
         if self.base not in get_args(Base):
             raise InputError((*place, "base"), 'must be "bonded" or "frictionless"')
-        require_positive((*place, "thickness"), self.thickness)
+        as_positive((*place, "thickness"), self.thickness)
         if self.poissons_ratio is not None:
             require_poissons_ratio((*place, "poissons_ratio"), self.poissons_ratio)
 
@@ -95,7 +95,7 @@ class Material:
             raise InputError(("material", "layer"), detail)
         for name in ("e_star", "g_star", "body_thickness", "shear_modulus"):
             if (value := getattr(self, name)) is not None:
-                require_positive(("material", name), value)
+                as_positive(("material", name), value)
 
 
 UNKNOWN: Final = Material(1.0)

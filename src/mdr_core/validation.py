@@ -140,24 +140,18 @@ def single(path: tuple[str | int, ...], value: ArrayLike) -> float:
     return float(numbers)
 
 
-def require_positive(path: tuple[str | int, ...], value: float | ArrayLike) -> None:
-    """Raise InputError at the path unless all of the value is positive and finite."""
-    low, high = extremes(value if isinstance(value, float) else as_numbers(path, value))
-    if not (low > 0 and high < inf):
-        raise InputError(path, POSITIVE if low <= 0 else FINITE)
-
-
 def as_positive(path: tuple[str | int, ...], value: Any) -> Any:
     """Return positive and finite numbers, a list as an array, or raise InputError at the path."""
-    if isinstance(value, (list, tuple)):
-        value = as_numbers(path, value)
-    require_positive(path, value)
-    return value
+    numbers = value if isinstance(value, float) else as_numbers(path, value)
+    low, high = extremes(numbers)
+    if not (low > 0 and high < inf):
+        raise InputError(path, POSITIVE if low <= 0 else FINITE)
+    return numbers if isinstance(value, (list, tuple)) else value
 
 
 def require_single_positive(path: tuple[str | int, ...], value: float) -> None:
     """Raise InputError at the path unless the value is one number, positive and finite."""
-    require_positive(path, single(path, value))
+    as_positive(path, single(path, value))
 
 
 def require_whole(path: tuple[str | int, ...], value: object) -> None:

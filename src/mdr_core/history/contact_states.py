@@ -21,9 +21,9 @@ from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import (
     as_numbers,
+    as_positive,
     require_finite,
     require_inside,
-    require_positive,
     require_type,
 )
 
@@ -175,7 +175,7 @@ def unloaded_many(
     given |= {("profile", name): profile.parameters[name] for name in profile.swept}
     values, count = _per_contact(given)
     for path, value in given.items():
-        require_positive(path, value)
+        as_positive(path, value)
     none = np.zeros(count, dtype=np.intp)
     lines = Polylines(read_only(np.zeros((0, COLUMNS))), none, np.zeros((2, count)))
     e_star, g_star, friction, *_ = values
