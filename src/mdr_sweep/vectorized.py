@@ -3,6 +3,7 @@
 Cases that such a call cannot solve are solved one by one.
 """
 
+import re
 from collections.abc import Iterator, Mapping
 from math import nan
 from typing import Any, Final
@@ -28,10 +29,9 @@ Columns = Mapping[str, Column]
 Contact = NormalContact | TangentialContact
 # Queries that the core solves for arrays of profiles, moduli and loads.
 _VECTORIZED: Final = frozenset({"normal", "tangential"})
-# Fields, or groups of fields, whose numbers can be arrays over the cases.
-_ARRAYS: Final = (
-    *("profile.", "load.", "tangential.", "friction_coefficient"),
-    *("material.e_star", "material.g_star"),
+# Fields whose numbers can be arrays over the cases of one call; members of lists cannot.
+_ARRAYS: Final = re.compile(
+    r"(profile|load|tangential)\.\w+|friction_coefficient|material\.[eg]_star"
 )
 # Members of a material whose contacts are solved one by one.
 _ALONE: Final = {"work_of_adhesion", "layer"}
@@ -68,8 +68,7 @@ def solve(spec: Spec, batch: pa.RecordBatch) -> pa.RecordBatch:
 
 def _is_array(name: str, column: Column) -> bool:
     """Return True if a field can be an array over the cases of one call."""
-    in_list = name.startswith(("profile.terms.", "profile.radii."))
-    return column.schema["type"] == "number" and name.startswith(_ARRAYS) and not in_list
+    return column.schema["type"] == "number" and _ARRAYS.fullmatch(name) is not None
 
 
 def _groups(columns: Columns, size: int) -> Iterator[Rows]:

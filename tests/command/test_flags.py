@@ -181,19 +181,23 @@ def test_completion_knows_commands_and_options(shell: str, capsys: Capture) -> N
 def test_every_help_shows_an_example(name: str, capsys: Capture) -> None:
     with pytest.raises(SystemExit):
         main([name, "--help"])
-    assert f"example:\n  {COMMANDS[name].example}\n" in capsys.readouterr().out
+    shown = f"mdr {name} {COMMANDS[name].example}".rstrip()
+    assert f"example:\n  {shown}" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
-    "example", [one.example for one in COMMANDS.values() if "--kind" in one.example]
+    "given",
+    [
+        [name, *shlex.split(one.example)]
+        for name, one in COMMANDS.items()
+        if "--kind" in one.example
+    ],
 )
 def test_examples_of_options_run(
-    example: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+    given: list[str], tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("curve.csv").write_text("depth [nm],load [µN]\n0,0\n10,1\n20,2.8\n30,5.2\n", "utf-8")
-    program, *given = shlex.split(example)
-    assert program == "mdr"
     assert command.main(given) == 0
     assert capsys.readouterr().out
 
