@@ -11,7 +11,6 @@ from mdr_core import half_space, materials, validity
 from mdr_core.doubles import ADJACENT, LARGEST, ROUNDING
 from mdr_core.elementwise import broadcast, where
 from mdr_core.equivalent_1d import coordinate_from_radius
-from mdr_core.errors import Notice
 from mdr_core.extrema import coordinate_from_pressure, largest_stress, pressure_and_slope
 from mdr_core.materials import UNKNOWN, Material
 from mdr_core.profiles import Profile, Tabulated
@@ -28,9 +27,6 @@ from mdr_core.validation import (
 )
 
 CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
-ACCURACY: Final = 1e-9
-"""Error estimate above which results carry the warning `accuracy`: results next to a limit of their
-method have this accuracy (manual, Speed and accuracy)."""
 # Relative error of a searched maximum. Source: notes, §7.
 _OF_MAXIMUM: Final = 3e-13
 
@@ -210,13 +206,6 @@ class NormalContact(validity.ResultsOverLoads):
         is_exact = not self.profile.flattens and self.control != "maximum_pressure"
         return ROUNDING if is_exact else self.error_estimates
 
-    def warnings_with(self, error: float, limit: float = ACCURACY) -> tuple[Notice, ...]:
-        """Return the warnings about profile and loads, and about an error above a limit."""
-        found = validity.notices(self.findings)
-        if error > limit:
-            found.append(inaccurate(error, limit))
-        return tuple(found)
-
     @property
     def findings(self) -> list[validity.Finding]:
         """Findings that depend only on the profile and the loads."""
@@ -232,12 +221,6 @@ class NormalContact(validity.ResultsOverLoads):
             of_table = [validity.tip(self, self.profile), validity.smoothed(self, self.profile)]
             return [validity.table_end(self), *of_table, *found]
         return found
-
-
-def inaccurate(error: float, limit: float = ACCURACY) -> Notice:
-    """Return the warning that an error estimate exceeds a limit."""
-    message = f"error_estimate is {error:.2g}, above {limit:g}: results have fewer digits here"
-    return Notice("accuracy", message, error, limit)
 
 
 def solve(

@@ -30,6 +30,9 @@ _SOURCES: Final[Mapping[str, Sequence[str]]] = json.loads(
 )
 MODEL_ERRORS: Final = ("model_error", "model_error_radius", "model_error_pressure")
 """Estimates of the error of the model; the last two exist for round bodies or a thickness."""
+ACCURACY: Final = 1e-9
+"""Error estimate above which results carry the warning `accuracy`: results next to a limit of their
+method have this accuracy (manual, Speed and accuracy)."""
 # Sizes above which each limit is reported; judgements.
 _LIMITS: Final = {
     # Contact radius over the last radius of a table.
@@ -144,8 +147,7 @@ class ResultsOverLoads(ContactResults):
     @property
     def warnings_without_bodies(self: SolvedContact) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        found: tuple[Notice, ...] = self.normal.warnings_with(self.error_estimate)
-        return found
+        return tuple(notices([*self.normal.findings, inaccurate(self.error_estimate)]))
 
 
 def _under_a_force(contact: LoadedContact, error: Array | None) -> Array | None:
@@ -214,6 +216,16 @@ def findings(contact: SolvedContact) -> list[Finding]:
         beta = contact.normal.material.dundurs_beta
         found.append(of_moduli(contact.normal.e_star, contact.g_star, beta))
     return found
+
+
+def inaccurate(error: Parameter, limit: float = ACCURACY) -> Finding:
+    """Return `accuracy`: error estimates above a limit."""
+
+    def message() -> str:
+        largest = extremes(error)[1]
+        return f"error_estimate is {largest:.2g}, above {limit:g}: results have fewer digits here"
+
+    return Finding("accuracy", np.asarray(error) > limit, message, error, limit)
 
 
 def table_end(contact: LoadedContact) -> Finding:

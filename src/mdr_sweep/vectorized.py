@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from mdr_core import validity
 from mdr_core.errors import InputError
-from mdr_core.normal import ACCURACY, NormalContact
+from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_service import problems
 from mdr_service.queries import QUERIES
@@ -147,11 +147,9 @@ def _results(
 
 def _warnings(query: Query, source: Contact, size: int) -> NDArray[Any]:
     """Return the codes of the warnings of each case, in the service's order."""
-    contact = source.normal
-    flags: dict[str, Any] = {each.code: each.where for each in validity.findings(source)}
-    flags |= {each.code: each.where for each in contact.findings}
-    flags["accuracy"] = source.error_estimates > ACCURACY
-    flags |= {each.code: each.where for each in yields(query, source)}
+    found = [*validity.findings(source), *source.normal.findings]
+    found += [validity.inaccurate(source.error_estimates), *yields(query, source)]
+    flags = {each.code: each.where for each in found}
     codes = np.full(size, None)
     for code, where in flags.items():
         here = np.broadcast_to(where, (size,))

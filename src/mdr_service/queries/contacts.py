@@ -19,7 +19,7 @@ from mdr_core.errors import DefectError, InputError, Notice
 from mdr_core.history import LoadHistory
 from mdr_core.impact import Impact
 from mdr_core.materials import UNUSABLE
-from mdr_core.normal import ACCURACY, NormalContact, inaccurate
+from mdr_core.normal import NormalContact
 from mdr_core.results import Results
 from mdr_core.tangential import TangentialContact
 from mdr_core.torsion import TorsionalContact
@@ -257,8 +257,7 @@ def response(
     else:
         # The warnings of the source cover its own error, not the error of fields.
         found = [notice for notice in found if notice.code != "accuracy"]
-        if error > ACCURACY:
-            found.append(inaccurate(error))
+        found += validity.notices([validity.inaccurate(error)])
     about = {
         "method": method or source.method,
         "sources": [*dict.fromkeys((*source.sources, *sources_of(*values, *(unchecked or ()))))],
