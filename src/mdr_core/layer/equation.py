@@ -80,8 +80,6 @@ def states(profile: Profile, layer: Layer, coordinate: Array) -> States:
         for block in in_blocks(index.size, count * count):
             own = index[block]
             found.append((own, _block(profile, layer, coordinate[own], a[own], count, most)))
-    if len(found) == 1:
-        return found[0][1]
     modes = max((len(states.correction) for _, states in found), default=0)
     sizes = [(part.size,)] * (len(States._fields) - 2) + [(modes, part.size)] * 2
     whole = States(*map(np.zeros, sizes))
