@@ -17,69 +17,49 @@ class Command(NamedTuple):
     """A command: its summary, and its module with `run` and, if it has arguments, `declare`."""
 
     summary: str
-    example: str
-    """Command line that the help shows."""
+    example: str = ""
+    """Arguments of the command line that the help shows."""
     module: str = "mdr_command.query"
 
 
-_STEEL: Final = "--kind paraboloid --radius 0.01 --e-star 1.15e11"
-_SHEARED: Final = f"{_STEEL} --g-star 9.5e10 --friction-coefficient 0.3"
+_STEEL: Final = "--kind paraboloid --radius 0.01 --e-star 1.15e11 --normal-force 10"
+_RUBBED: Final = f"{_STEEL} --g-star 9.5e10 --friction-coefficient 0.3 --tangential-force 2"
+_TWIST: Final = "--shear-modulus 4e10 --friction-coefficient 0.3 --rotation 1e-4"
+_STUDY: Final = "--template ball.json --grid load.normal_force=1:100:1000:log --out a.csv"
 COMMANDS: Final = {
-    "normal": Command(
-        "solve a frictionless normal contact",
-        f"mdr normal {_STEEL} --normal-force 10",
-    ),
+    "normal": Command("solve a frictionless normal contact", _STEEL),
     "fit": Command(
         "fit modulus and contact point to a curve",
-        "mdr fit curve.csv --kind paraboloid --radius 5e-6 --segment loading",
+        "curve.csv --kind paraboloid --radius 5e-6 --segment loading",
     ),
-    "tangential": Command(
-        "solve a contact with friction",
-        f"mdr tangential {_SHEARED} --normal-force 10 --tangential-force 2",
-    ),
-    "history": Command("solve a load history", "mdr history request.json -o history.json"),
-    "tangential_fit": Command(
-        "fit shear modulus and friction to a loop", "mdr tangential_fit request.json"
-    ),
-    "impact": Command("solve oblique impacts", "mdr impact request.json --format csv"),
-    "torsion": Command(
-        "solve a contact twisted about its axis",
-        "mdr torsion --kind paraboloid --radius 0.01 --e-star 1.15e11 --shear-modulus 4e10 "
-        "--friction-coefficient 0.3 --normal-force 10 --rotation 1e-4",
-    ),
+    "tangential": Command("solve a contact with friction", _RUBBED),
+    "history": Command("solve a load history", "request.json -o history.json"),
+    "tangential_fit": Command("fit shear modulus and friction to a loop", "request.json"),
+    "impact": Command("solve oblique impacts", "request.json --format csv"),
+    "torsion": Command("solve a contact twisted about its axis", f"{_STEEL} {_TWIST}"),
     "stress": Command(
         "compute stresses and displacements over the radius",
-        f"mdr stress {_STEEL} --normal-force 10 --quantities pressure --points 50 --format csv",
+        f"{_STEEL} --quantities pressure --points 50 --format csv",
     ),
     "subsurface": Command(
         "compute stresses beneath the surface and yield",
-        "mdr subsurface request.json --format npz -o stresses.npz",
+        "request.json --format npz -o stresses.npz",
     ),
-    "wear": Command(
-        "compute the limiting state of fretting wear",
-        f"mdr wear {_SHEARED} --normal-force 10 --tangential-force 2",
-    ),
+    "wear": Command("compute the limiting state of fretting wear", _RUBBED),
     "evolution": Command(
-        "integrate fretting wear over the cycles",
-        "mdr evolution - < request.json > evolution.json",
+        "integrate fretting wear over the cycles", "- < request.json > evolution.json"
     ),
     "sweep": Command(
-        "run a parameter study over a table or a grid",
-        "mdr sweep normal --template ball.json --grid load.normal_force=1:100:1000:log --out a.csv",
-        "mdr_sweep.command",
+        "run a parameter study over a table or a grid", f"normal {_STUDY}", "mdr_sweep.command"
     ),
-    "profiles": Command("list the kinds of profile", "mdr profiles", "mdr_command.profiles"),
-    "serve": Command(
-        "start the HTTP service", "mdr serve --host 127.0.0.1 --port 8000", "mdr_command.serve"
-    ),
+    "profiles": Command("list the kinds of profile", module="mdr_command.profiles"),
+    "serve": Command("start the HTTP service", "--host 127.0.0.1 --port 8000", "mdr_command.serve"),
     "openapi": Command(
-        "print the OpenAPI document of the HTTP service",
-        "mdr openapi > openapi.json",
-        "mdr_command.openapi",
+        "print the OpenAPI document of the HTTP service", "> openapi.json", "mdr_command.openapi"
     ),
     "completion": Command(
         "print a script that completes commands in a shell",
-        "mdr completion bash > ~/.local/share/bash-completion/completions/mdr",
+        "bash > ~/.local/share/bash-completion/completions/mdr",
         "mdr_command.completion",
     ),
 }
@@ -130,7 +110,7 @@ def _run(given: Sequence[str]) -> int:
     arguments, unknown = parser.parse_known_args(given)
     if unknown:
         said = f"there is no {' '.join(unknown)}; see mdr {name} --help, with an example:"
-        sys.stderr.write(f"mdr {name}: {said} {COMMANDS[name].example}\n")
+        sys.stderr.write(f"mdr {name}: {said} mdr {name} {COMMANDS[name].example}\n")
         return ExitStatus.INVALID_INPUT
     status: int = arguments.run(arguments)
     return status
@@ -151,7 +131,7 @@ def parser_of(loaded: Container[str]) -> argparse.ArgumentParser:
             name,
             help=command.summary,
             description=command.summary,
-            epilog=f"example:\n  {command.example}",
+            epilog=f"example:\n  mdr {name} {command.example}".rstrip(),
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         if name in loaded:

@@ -10,7 +10,7 @@ import logging
 import re
 import sys
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from pydantic.fields import FieldInfo
@@ -23,21 +23,13 @@ from mdr_core.table_reader import MeasuredCurve, Points, metres, read_curve, rea
 from mdr_service import content_negotiation, problems
 from mdr_service.dispatch import respond
 from mdr_service.problems import ServiceError
-from mdr_service.queries import QUERIES
+from mdr_service.queries.contacts import pointing
 from mdr_service.query_parameters import NUMBERS, PARAMETERS, parameters_of
 from mdr_service.schemas.fits import FitQuery
 from mdr_service.schemas.profiles import OF_NUMBERS
 from mdr_service.sentences import NOT_NUMBERS
 from mdr_service.serializers import FORMATS
 from mdr_service.settings import SETTINGS
-
-
-class _Option(NamedTuple):
-    """Option: the name of its value in the help, and its description."""
-
-    metavar: str
-    help: str
-
 
 _STATUS: Final = {
     problems.INTERNAL: ExitStatus.INTERNAL_ERROR,
@@ -48,31 +40,18 @@ _STANDARD_INPUT: Final = "-"
 _PARAMETERS: Final = PARAMETERS | {"fit": parameters_of(FitQuery)}
 # Heights between which an area function describes a tip.
 _HEIGHTS: Final = ("largest_height", "lowest_height")
-# Options of files in place of parameters, with the name of their value and their help.
+# Help of the options of files, in place of parameters.
 _OF_FILES: Final = {
-    "table": _Option(
-        "CSV", "table of a measured profile, in place of --kind; it is converted to metres"
-    ),
-    "length_unit": _Option(
-        "m|mm|um|nm",
-        "unit of the table, where its heading names none; two, as mm,um, for r and f; and of a "
-        "tip's area function",
-    ),
-    "area_coefficients": _Option(
-        "C0,C1,...",
-        "tip with the area A(h) = C0 h^2 + C1 h + C2 h^(1/2) + ..., in place of --kind",
-    ),
-    "largest_height": _Option("NUMBER", "height h up to which the area function describes the tip"),
-    "lowest_height": _Option(
-        "NUMBER",
-        "height h from which the area function is valid (default: 0); below, the tip is continued "
-        "smoothly",
-    ),
-    "curve_units": _Option(
-        "DEPTH,FORCE",
-        "units of the curve in FILE, such as nm,uN, where its headings name none; a curve is "
-        "converted to metres and newtons, the units of the other options",
-    ),
+    "table": "CSV file of a measured profile, in place of --kind; it is converted to metres",
+    "length_unit": "unit of the table (m, mm, um or nm), where its heading names none; two, as "
+    "mm,um, for r and f; and of a tip's area function",
+    "area_coefficients": "C0,C1,... of a tip with the area A(h) = C0 h^2 + C1 h + C2 h^(1/2) + "
+    "..., in place of --kind",
+    "largest_height": "height h up to which the area function describes the tip",
+    "lowest_height": "height h from which the area function is valid (default: 0); below, the tip "
+    "is continued smoothly",
+    "curve_units": "DEPTH,FORCE: units of the curve in FILE, such as nm,uN, where its headings "
+    "name none; a curve is converted to metres and newtons, the units of the other options",
 }
 # Options beside the parameters of the request.
 _OTHER_OPTIONS: Final = frozenset({"output", "size", "units", *_OF_FILES})
@@ -112,9 +91,9 @@ def declare(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(**dict.fromkeys(_OF_FILES))
     if fields := _options(parser.get_default("command")):
         group = parser.add_argument_group("request by options, in place of a file")
-        for name, option in _OF_FILES.items():
+        for name, text in _OF_FILES.items():
             if name != "curve_units" or parser.get_default("command") == "fit":
-                group.add_argument(_flag(name), **option._asdict())
+                group.add_argument(_flag(name), help=text)
         # By default -1e-3 counts as an option; argparse has no public way to change that.
         parser._negative_number_matcher = re.compile(r"-\.?\d")  # noqa: SLF001
         for name, field in fields.items():
@@ -170,8 +149,7 @@ def _content(arguments: argparse.Namespace) -> bytes:
     given = {each: found[0] for each, found in values.items()}
     members = _table(arguments, given)
     if not given:
-        query = QUERIES[name].request.model_validate_json(_read(arguments.file or _STANDARD_INPUT))
-        return respond(name, query, media_type, look)
+        return respond(name, _read(arguments.file or _STANDARD_INPUT), media_type, look)
     if name == "fit":
         members |= _curve(arguments, given)
     elif arguments.file:
@@ -191,7 +169,8 @@ def _curve(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
     units = (arguments.curve_units or ",").split(",")
     if len(units) != len(CURVE):
         raise InputError(("curve_units",), "gives the units of depth and force, such as nm,uN")
-    curve = read_curve(arguments.file, [unit or None for unit in units])
+    with pointing({"units": ("curve_units",)}):
+        curve = read_curve(arguments.file, [unit or None for unit in units])
     used = np.ones(curve.normal_force.size, dtype=bool)
     if curve.segments and "segment" in given and "drift" not in given:
         branches = [kind for kind in dict.fromkeys(curve.segments) if kind != "hold"]
@@ -219,22 +198,15 @@ def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
         raise InputError((option,), f"is a profile: leave out {_flag(replaced[0])}")
     given["kind"] = OF_NUMBERS[0]
     if file:
-        r, f = _thinned(
-            arguments, read_table(file, unit.split(",") if unit and "," in unit else unit)
-        )
+        r, f = read_table(file, unit.split(",") if unit and "," in unit else unit)
     else:
         r, f = _tip(area, [vars(arguments)[name] for name in _HEIGHTS], unit or "m")
+    if (count := r.size) > (most := SETTINGS.max_table_points):
+        # An even choice of as many points as a request may have.
+        _say(arguments, file, f"{count} points, of which {most} are used")
+        chosen = np.argsort(r)[np.linspace(0, count - 1, most).round().astype(int)]
+        r, f = r[chosen], f[chosen]
     return {"profile": {"kind": "tabulated", "r": r.tolist(), "f": f.tolist()}}
-
-
-def _thinned(arguments: argparse.Namespace, points: Points) -> Points:
-    """Return an even choice of as many points as a request may have, and report it."""
-    most, count = SETTINGS.max_table_points, points.r.size
-    if count <= most:
-        return points
-    _say(arguments, arguments.table, f"{count} points, of which {most} are used")
-    chosen = np.argsort(points.r)[np.linspace(0, count - 1, most).round().astype(int)]
-    return Points(points.r[chosen], points.f[chosen])
 
 
 def _tip(coefficients: str, heights: list[str | None], unit: str) -> Points:
@@ -287,31 +259,28 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
     """Print the errors, each with its option or its place in the file; return the exit status."""
     names = _options(arguments.command)
     by_options = any(name in arguments for name in names)
-    by_curve = by_options and arguments.command == "fit"
     file = arguments.file or _STANDARD_INPUT
-    table, area = arguments.table, arguments.area_coefficients
+    # Files that hold members of a request by options.
+    files: dict[str, str] = {}
+    if by_options and arguments.command == "fit":
+        files = dict.fromkeys(("table", *MeasuredCurve._fields), file)
+    if arguments.table:
+        files |= dict.fromkeys(("kind", "profile", "table"), arguments.table)
     for pointer, detail in error.errors or [("", error.detail)]:
         place = pointer[1:].replace("/", ".")
+        first, _, rest = place.partition(".")
         parts = ["standard input" if file == _STANDARD_INPUT else file, place, detail]
         if error.type == problems.MALFORMED_JSON:
             parts.append(_REQUEST + (_BY_OPTIONS if names else ""))
-        elif area and f"{place}.".startswith(("kind.", "profile.")):
-            name = place.removeprefix("profile.")
-            option = name if name in _HEIGHTS else "area_coefficients"
-            parts = [_flag(option), detail]
-        elif table and f"{place}.".startswith(("kind.", "profile.", "table.")):
-            parts = [table, place.partition(".")[2], detail]
-        elif by_curve and place.partition(".")[0] in {"table", *MeasuredCurve._fields}:
-            parts = [file, place.partition(".")[2], detail]
-        elif by_curve and place == "units":
-            parts = ["--curve-units", detail]
+        elif arguments.area_coefficients and first in {"kind", "profile"}:
+            parts = [_flag(rest if rest in _HEIGHTS else "area_coefficients"), detail]
+        elif first in files:
+            parts = [files[first], rest, detail]
         elif by_options or place in _OTHER_OPTIONS:
             renamed = _NAME.sub(
                 lambda each: _flag(each[0]) if each[0] in names else each[0], detail
             )
-            is_text = place in names and names[place].annotation not in NUMBERS
-            said = detail.replace(NOT_NUMBERS, _NOT_NUMBERS) if is_text else renamed
-            parts = [_flag(place), said]
+            parts = [_flag(place), renamed.replace(NOT_NUMBERS, _NOT_NUMBERS)]
         _say(arguments, *parts)
     return _STATUS.get(error.type, ExitStatus.INVALID_INPUT)
 

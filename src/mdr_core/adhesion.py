@@ -24,13 +24,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
-from mdr_core import validation
+from mdr_core import materials, validation
 from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.elementwise import full, number, some, where
 from mdr_core.equivalent_1d import coordinate_from_radius
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import LEAST_GAP, largest_with
-from mdr_core.materials import UNKNOWN, Material, normal_modulus
+from mdr_core.materials import UNKNOWN, Material
 from mdr_core.normal import CONTROLS, NormalContact
 from mdr_core.profiles import FlatPunch, Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
@@ -397,7 +397,7 @@ def solve(
     validation.require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     validation.require_single_profile(profile.swept)
     material = e_star if isinstance(e_star, Material) else UNKNOWN
-    modulus: Any = normal_modulus(e_star)
+    modulus = materials.modulus("e_star", e_star)
     for field, value in {"e_star": modulus, "work_of_adhesion": work_of_adhesion}.items():
         validation.require_single_positive(("material", field), value)
     loads = (indentation_depth, normal_force, contact_radius)
@@ -444,7 +444,7 @@ def _state(curve: Curve, name: str, load: Array, e_star: float) -> tuple[Array, 
     """Coordinate and retraction under each load, and the largest number of stable states."""
     profile, states = curve.profile, 1
     if name == "contact_radius":
-        validation.require_positive(("load", name), load)
+        validation.as_positive(("load", name), load)
         at = coordinate_from_radius(profile, load)
         bad = np.asarray(~(curve.excess(_SHARES["indentation_depth"], at) >= -sqrt(ROUNDING)))
         if some(bad):

@@ -120,7 +120,8 @@ class Impact(validity.ContactResults):
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        return self.normal.warnings_with(self.error_estimate, self.rtol)
+        inaccurate = validity.inaccurate(self.error_estimate, self.rtol)
+        return tuple(validity.notices([*self.normal.findings, inaccurate]))
 
 
 class _Motion(NamedTuple):

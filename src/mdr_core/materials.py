@@ -2,11 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Final, Literal, TypeVar, get_args
+from typing import Any, Final, Literal, get_args
 
 from mdr_core.errors import InputError
-from mdr_core.typing import Parameter
-from mdr_core.validation import BODIES, require_poissons_ratio, require_positive
+from mdr_core.validation import BODIES, as_positive, require_poissons_ratio
 
 RIGID: Final = "rigid"
 Base = Literal["bonded", "frictionless"]
@@ -36,7 +35,7 @@ class Body:
     def __post_init__(self) -> None:
         if self.held not in get_args(Held):
             raise InputError(("held",), f"must be one of {', '.join(get_args(Held))}")
-        require_positive(("youngs_modulus",), self.youngs_modulus)
+        as_positive(("youngs_modulus",), self.youngs_modulus)
         require_poissons_ratio(("poissons_ratio",), self.poissons_ratio)
 
     @property
@@ -62,7 +61,7 @@ class Layer:
         place = ("material", "layer")
         if self.base not in get_args(Base):
             raise InputError((*place, "base"), 'must be "bonded" or "frictionless"')
-        require_positive((*place, "thickness"), self.thickness)
+        as_positive((*place, "thickness"), self.thickness)
         if self.poissons_ratio is not None:
             require_poissons_ratio((*place, "poissons_ratio"), self.poissons_ratio)
 
@@ -96,50 +95,41 @@ class Material:
             raise InputError(("material", "layer"), detail)
         for name in ("e_star", "g_star", "body_thickness", "shear_modulus"):
             if (value := getattr(self, name)) is not None:
-                require_positive(("material", name), value)
+                as_positive(("material", name), value)
 
 
 UNKNOWN: Final = Material(1.0)
 """Bodies of which nothing is known; the contact, and not this material, has their E*."""
-# One number, or an array over the cases of a sweep.
-_Number = TypeVar("_Number", bound=Parameter)
+_NEEDED: Final = {
+    "e_star": "is needed: give it, or bodies",
+    "g_star": "is needed with friction: give it, or bodies",
+    "shear_modulus": "is needed for a twist, 1/G = 1/G1 + 1/G2: give it, or bodies",
+}
 
 
-def normal_modulus(e_star: _Number | Material) -> _Number | float:
-    """Return E* [pressure] of a material, or the number itself; raise InputError otherwise.
+def modulus(name: str, given: Any) -> Any:
+    """Return the positive modulus of a material by its name [pressure], or the number or array.
 
-    Its value is not checked. Raises InputError for a layer, with which only `layer.solve` computes.
+    Parameters
+    ----------
+    name : `e_star`, `g_star`, or `shear_modulus`, the G of a twist, which G* does not determine.
+    given : a material, a number, an array, or None.
+
+    Raises
+    ------
+    InputError : no modulus, one that is not positive and finite, or a layer, with which only
+        `layer.solve` computes.
     """
-    if isinstance(e_star, Material) and e_star.layer is not None:
-        raise InputError(("material", "layer"), UNUSABLE)
-    return _modulus("e_star", e_star, "is needed: give it, or bodies")
-
-
-def shear_modulus(g_star: _Number | Material | None) -> _Number | float:
-    """Return G* [pressure] of a material, or the number itself; raise InputError otherwise.
-
-    The value is not checked.
-    """
-    return _modulus("g_star", g_star, "is needed with friction: give it, or bodies")
-
-
-def twist_modulus(shear_modulus: _Number | Material | None) -> _Number | float:
-    """Return the shear modulus G of a twist [pressure], from a material or the number itself.
-
-    The value is not checked. Raises InputError if there is none: G* does not determine it.
-    """
-    detail = "is needed for a twist, 1/G = 1/G1 + 1/G2: give it, or bodies"
-    return _modulus("shear_modulus", shear_modulus, detail)
-
-
-def _modulus(name: str, given: _Number | Material | None, absent: str) -> _Number | float:
-    """Modulus of a material, or the number itself; `absent` is the sentence if there is none."""
-    value: Any = getattr(given, name) if isinstance(given, Material) else given
-    if isinstance(value, Body):
-        absent = "depends on both bodies: combine them by from_bodies([body, other])"
-    if value is None or isinstance(value, Body):
-        raise InputError(("material", name), absent)
-    return value
+    if isinstance(given, Body):
+        detail = "depends on both bodies: combine them by from_bodies([body, other])"
+        raise InputError(("material", name), detail)
+    if isinstance(given, Material):
+        if name == "e_star" and given.layer is not None:
+            raise InputError(("material", "layer"), UNUSABLE)
+        given = getattr(given, name)
+    if given is None:
+        raise InputError(("material", name), _NEEDED[name])
+    return as_positive(("material", name), given)
 
 
 def from_bodies(
@@ -185,30 +175,27 @@ def from_bodies(
     parts = [body for body in bodies if isinstance(body, Body)]
     if not parts:
         raise InputError(("material", "bodies"), "at least one body must be elastic")
-    # The factors of 1 - nu^2 are free of cancellation as nu -> -1.
-    compliances = [
-        (1 - body.poissons_ratio) * (1 + body.poissons_ratio) / body.youngs_modulus
-        for body in parts
-    ]
-    normal = sum(compliances)
-    share = compliances[0] / normal if isinstance(bodies[0], Body) else 0.0
-    shear = sum((2 - body.poissons_ratio) / (4 * body.shear_modulus) for body in parts)
-    twist = sum(1 / body.shear_modulus for body in parts)
+    first, second = map(_compliances, bodies)
+    normal, shear, twist, _, total = map(sum, zip(first, second, strict=True))
+    moduli = 1 / normal, 1 / shear, (first[3] - second[3]) / (2 * total)
     ratios = tuple(body.poissons_ratio for body in parts)
-    mismatch = sum(
-        sign * (1 - 2 * body.poissons_ratio) / body.shear_modulus
-        for sign, body in zip((1, -1), bodies, strict=True)
-        if isinstance(body, Body)
-    )
-    total = sum((1 - body.poissons_ratio) / body.shear_modulus for body in parts)
-    moduli = 1 / normal, 1 / shear, mismatch / (2 * total)
     if layer is not None:
         # Of two equal bodies the second one.
-        both = zip(compliances[::-1], ratios[::-1], strict=True)
-        largest, nu = max(both, key=lambda each: each[0])
+        largest, nu = (second[0], ratios[-1]) if second[0] >= first[0] else (first[0], ratios[0])
         if layer.poissons_ratio not in {None, nu}:
             detail = "differs from Poisson's ratio of the more compliant body: leave it out"
             raise InputError(("material", "layer", "poissons_ratio"), detail)
         layer = replace(layer, poissons_ratio=nu, share=largest / normal)
     held = tuple(body.held if isinstance(body, Body) else "contacts" for body in bodies)
+    share = first[0] / normal
     return Material(*moduli, ratios, share, body_thickness, 1 / twist, (held[0], held[1]), layer)
+
+
+def _compliances(body: Body | Literal["rigid"]) -> tuple[float, ...]:
+    """Terms of a body in 1/E*, 1/G* and 1/G of a twist, Dundurs' m, and (1 - nu)/G [1/pressure]."""
+    if not isinstance(body, Body):
+        return (0.0,) * 5
+    nu, shear = body.poissons_ratio, body.shear_modulus
+    # The factors of 1 - nu^2 are free of cancellation as nu -> -1.
+    normal = (1 - nu) * (1 + nu) / body.youngs_modulus
+    return normal, (2 - nu) / (4 * shear), 1 / shear, (1 - 2 * nu) / shear, (1 - nu) / shear

@@ -7,19 +7,17 @@ from typing import ClassVar, Final, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import half_space, validity
+from mdr_core import half_space, materials, validity
 from mdr_core.doubles import ADJACENT, LARGEST, ROUNDING
 from mdr_core.elementwise import broadcast, where
 from mdr_core.equivalent_1d import coordinate_from_radius
-from mdr_core.errors import Notice
 from mdr_core.extrema import coordinate_from_pressure, largest_stress, pressure_and_slope
-from mdr_core.materials import UNKNOWN, Material, normal_modulus
+from mdr_core.materials import UNKNOWN, Material
 from mdr_core.profiles import Profile, Tabulated
 from mdr_core.profiles.base import NORMAL_QUANTITIES
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import (
-    as_positive,
     common_shape,
     extremes,
     only_one,
@@ -29,9 +27,6 @@ from mdr_core.validation import (
 )
 
 CONTROLS: Final = ("indentation_depth", "normal_force", "contact_radius")
-ACCURACY: Final = 1e-9
-"""Error estimate above which results carry the warning `accuracy`: results next to a limit of their
-method have this accuracy (manual, Speed and accuracy)."""
 # Relative error of a searched maximum. Source: notes, §7.
 _OF_MAXIMUM: Final = 3e-13
 
@@ -211,20 +206,14 @@ class NormalContact(validity.ResultsOverLoads):
         is_exact = not self.profile.flattens and self.control != "maximum_pressure"
         return ROUNDING if is_exact else self.error_estimates
 
-    def warnings_with(self, error: float, limit: float = ACCURACY) -> tuple[Notice, ...]:
-        """Return the warnings about profile and loads, and about an error above a limit."""
-        found = validity.notices(self.findings)
-        if error > limit:
-            found.append(inaccurate(error, limit))
-        return tuple(found)
-
     @property
     def findings(self) -> list[validity.Finding]:
         """Findings that depend only on the profile and the loads."""
         sharp = "mean_pressure is infinite at zero load: the tip is sharper than a cone"
+        infinite = "maximum_pressure is infinite, at radius {}"
         found = [
             validity.Finding("singular", np.isinf(self.mean_pressure), lambda: sharp),
-            validity.infinite_maximum(self),
+            validity.infinite_pressure(self, "singular", infinite),
         ]
         if self.material.layer is not None:
             found.append(validity.layer_strain(self.indentation_depth, self.material.layer))
@@ -232,12 +221,6 @@ class NormalContact(validity.ResultsOverLoads):
             of_table = [validity.tip(self, self.profile), validity.smoothed(self, self.profile)]
             return [validity.table_end(self), *of_table, *found]
         return found
-
-
-def inaccurate(error: float, limit: float = ACCURACY) -> Notice:
-    """Return the warning that an error estimate exceeds a limit."""
-    message = f"error_estimate is {error:.2g}, above {limit:g}: results have fewer digits here"
-    return Notice("accuracy", message, error, limit)
 
 
 def solve(
@@ -280,7 +263,7 @@ def solve(
     """
     require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     material = e_star if isinstance(e_star, Material) else UNKNOWN
-    modulus: Parameter = as_positive(("material", "e_star"), normal_modulus(e_star))
+    modulus: Parameter = materials.modulus("e_star", e_star)
     loads = (indentation_depth, normal_force, contact_radius, maximum_pressure)
     names = (*CONTROLS, "maximum_pressure")
     name, load = only_one(("load",), dict(zip(names, loads, strict=True)))

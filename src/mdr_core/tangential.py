@@ -8,12 +8,12 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import conditioning, equivalent_1d, stick_zone, validity
+from mdr_core import conditioning, equivalent_1d, materials, stick_zone, validity
 from mdr_core.doubles import EPS, ROUNDING
 from mdr_core.elementwise import broadcast, is_number, some, where
 from mdr_core.extrema import largest_stress
 from mdr_core.interval_moments import interval_moments
-from mdr_core.materials import Material, shear_modulus
+from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
 from mdr_core.stick_zone import CONTROLS
@@ -314,7 +314,7 @@ def solve(
     [1.0, 0.5]
     """
     require_type("contact", contact, NormalContact, "a contact from normal.solve")
-    modulus: Parameter = as_positive(("material", "g_star"), shear_modulus(g_star))
+    modulus: Parameter = materials.modulus("g_star", g_star)
     friction_coefficient = as_positive(("friction_coefficient",), friction_coefficient)
     loads = (tangential_force, tangential_displacement, stick_radius)
     name, given = only_one(("tangential",), dict(zip(CONTROLS, loads, strict=True)))

@@ -140,24 +140,18 @@ def single(path: tuple[str | int, ...], value: ArrayLike) -> float:
     return float(numbers)
 
 
-def require_positive(path: tuple[str | int, ...], value: float | ArrayLike) -> None:
-    """Raise InputError at the path unless all of the value is positive and finite."""
-    low, high = extremes(value if isinstance(value, float) else as_numbers(path, value))
-    if not (low > 0 and high < inf):
-        raise InputError(path, POSITIVE if low <= 0 else FINITE)
-
-
 def as_positive(path: tuple[str | int, ...], value: Any) -> Any:
     """Return positive and finite numbers, a list as an array, or raise InputError at the path."""
-    if isinstance(value, (list, tuple)):
-        value = as_numbers(path, value)
-    require_positive(path, value)
-    return value
+    numbers = value if isinstance(value, float) else as_numbers(path, value)
+    low, high = extremes(numbers)
+    if not (low > 0 and high < inf):
+        raise InputError(path, POSITIVE if low <= 0 else FINITE)
+    return numbers if isinstance(value, (list, tuple)) else value
 
 
 def require_single_positive(path: tuple[str | int, ...], value: float) -> None:
     """Raise InputError at the path unless the value is one number, positive and finite."""
-    require_positive(path, single(path, value))
+    as_positive(path, single(path, value))
 
 
 def require_whole(path: tuple[str | int, ...], value: object) -> None:
@@ -177,20 +171,13 @@ def not_negative(name: str) -> str:
 
 def require_not_negative(path: tuple[str | int, ...], values: Array) -> None:
     """Raise InputError at the first of the values that is negative or not finite."""
-    low, high = extremes(values)
-    if not (low >= 0 and high < inf):
-        bad = np.asarray(~((values >= 0) & (values < inf)))
-        first = first_index(bad)
-        detail = not_negative(str(path[-1])) if values[first] < 0 else FINITE
-        raise InputError((*path, *first), detail, bad)
+    reject(path, values, values < 0, not_negative(str(path[-1])))
+    require_finite(path, values)
 
 
 def require_finite(path: tuple[str | int, ...], values: Array) -> None:
     """Raise InputError at the first of the values that is not finite."""
-    low, high = extremes(values)
-    if np.size(values) and not (low > -inf and high < inf):
-        bad = np.asarray(~np.isfinite(values))
-        raise InputError((*path, *first_index(bad)), FINITE, bad)
+    reject(path, values, ~np.isfinite(values), FINITE)
 
 
 def as_curve(places: str, **given: ArrayLike) -> tuple[Array, Array]:
@@ -233,12 +220,11 @@ def require_representable(path: tuple[str | int, ...], used: Flags, *results: Ar
     bad = np.zeros(used.shape, dtype=bool)
     for values in results:
         bad |= used & ~((values > 1 / LARGEST) & (values < LARGEST))
-    if bad.any():
-        detail = (
-            "the contact under this load leaves the range of double precision: change the load, or "
-            "the units"
-        )
-        raise InputError((*path, *first_index(bad)), detail, bad)
+    detail = (
+        "the contact under this load leaves the range of double precision: change the load, or the "
+        "units"
+    )
+    reject(path, bad, bad, detail)
 
 
 def require_inside(

@@ -11,7 +11,7 @@ import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from importlib.resources import files
-from typing import Any, ClassVar, Final, NamedTuple, Protocol
+from typing import Any, ClassVar, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -30,6 +30,9 @@ _SOURCES: Final[Mapping[str, Sequence[str]]] = json.loads(
 )
 MODEL_ERRORS: Final = ("model_error", "model_error_radius", "model_error_pressure")
 """Estimates of the error of the model; the last two exist for round bodies or a thickness."""
+ACCURACY: Final = 1e-9
+"""Error estimate above which results carry the warning `accuracy`: results next to a limit of their
+method have this accuracy (manual, Speed and accuracy)."""
 # Sizes above which each limit is reported; judgements.
 _LIMITS: Final = {
     # Contact radius over the last radius of a table.
@@ -82,19 +85,9 @@ def _above_limit(
     return Finding(code, size > _ROOM * limit, message, size, limit, instead)
 
 
-class SolvedContact(Protocol):
-    """A contact with or without friction, on whose bodies its validity depends."""
-
-    @property
-    def normal(self) -> LoadedContact: ...
-    @property
-    def g_star(self) -> Parameter | None: ...
-    @property
-    def slips_from(self) -> Parameter: ...
-    @property
-    def solved(self) -> "SolvedContact": ...
-    @property
-    def warnings_without_bodies(self) -> tuple[Notice, ...]: ...
+SolvedContact: TypeAlias = Any
+"""A contact with or without friction, or a load history: it has `normal`, `g_star`, `slips_from`,
+`solved`, and `warnings_without_bodies`."""
 
 
 class ContactResults(Results):
@@ -147,15 +140,14 @@ class ResultsOverLoads(ContactResults):
     """Results of a contact under each of many loads, with an `error_estimates` over them."""
 
     @property
-    def error_estimate(self: Any) -> float:
+    def error_estimate(self: SolvedContact) -> float:
         """Largest of `error_estimates` [1]."""
         return extremes(self.error_estimates)[1]
 
     @property
-    def warnings_without_bodies(self: Any) -> tuple[Notice, ...]:
+    def warnings_without_bodies(self: SolvedContact) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        found: tuple[Notice, ...] = self.normal.warnings_with(self.error_estimate)
-        return found
+        return tuple(notices([*self.normal.findings, inaccurate(self.error_estimate)]))
 
 
 def _under_a_force(contact: LoadedContact, error: Array | None) -> Array | None:
@@ -224,6 +216,16 @@ def findings(contact: SolvedContact) -> list[Finding]:
         beta = contact.normal.material.dundurs_beta
         found.append(of_moduli(contact.normal.e_star, contact.g_star, beta))
     return found
+
+
+def inaccurate(error: Parameter, limit: float = ACCURACY) -> Finding:
+    """Return `accuracy`: error estimates above a limit."""
+
+    def message() -> str:
+        largest = extremes(error)[1]
+        return f"error_estimate is {largest:.2g}, above {limit:g}: results have fewer digits here"
+
+    return Finding("accuracy", np.asarray(error) > limit, message, error, limit)
 
 
 def table_end(contact: LoadedContact) -> Finding:
@@ -320,18 +322,16 @@ def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Fin
             return False
         return infinite_deviator(profile, radius, material.poissons_ratios, slips_from)
 
-    def places() -> str:
-        return (
-            f"the elastic pressure is infinite at radius {_infinite_radii(contact, yields)}: "
-            "a real material yields there under any load; round the tip or edge"
-        )
-
     found = [_above_limit("half_space", errors.force, message, instead)]
     if material.body_thickness is not None:
         found.append(_thin_body(contact))
     if radii is not None:
         found.append(_large_strain(contact))
-    return [*found, Finding("plastic", _infinite(contact, yields), places, instead="rounded_tip")]
+    text = (
+        "the elastic pressure is infinite at radius {}: a real material yields there under any "
+        "load; round the tip or edge"
+    )
+    return [*found, infinite_pressure(contact, "plastic", text, yields, "rounded_tip")]
 
 
 def _thin_body(contact: LoadedContact) -> Finding:
@@ -402,17 +402,33 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Findi
     return Finding("impossible_moduli", impossible, unphysical, value, _MODULI[value > 1])
 
 
-def infinite_maximum(contact: LoadedContact) -> Finding:
-    """Return `singular`: loads under which the pressure is infinite somewhere."""
+def infinite_pressure(
+    contact: LoadedContact,
+    code: str,
+    text: str,
+    counts: Callable[[Parameter], Flags | bool] = lambda _radius: True,
+    instead: Remedy | None = None,
+) -> Finding:
+    """Return the finding of loads under which the pressure is infinite at a radius that counts.
+
+    Parameters
+    ----------
+    contact : contact with or without friction.
+    code, text : of the warning; braces in the text stand for the radii.
+    counts : True in the cases in which a radius counts, all by default.
+    instead : see `Notice`.
+    """
+    where, radii = contact.contact_radius < 0, []
+    for b in contact.profile.infinite_pressure_radii:
+        here = contact.loaded & (b <= contact.contact_radius) & counts(b)
+        where = where | here
+        if some(here):
+            radii.append(extremes(b)[0])
 
     def message() -> str:
-        return f"maximum_pressure is infinite, at radius {_infinite_radii(contact, _always)}"
+        return text.format(listed([f"{b:.12g}" for b in radii]))
 
-    return Finding("singular", _infinite(contact, _always), message)
-
-
-def _always(_radius: Parameter) -> bool:
-    return True
+    return Finding(code, where, message, instead=instead)
 
 
 def infinite_deviator(
@@ -436,22 +452,6 @@ def infinite_deviator(
     if profile.is_flat_punch or not poissons_ratios or min(poissons_ratios) < _INCOMPRESSIBLE:
         return number(1.0) > 0
     return np.isinf(profile.tip_pressure) | (radius >= slips_from)
-
-
-def _infinite(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool]) -> Flags:
-    """Return whether the pressure is infinite at a radius that counts."""
-    found = contact.contact_radius < 0
-    for b in contact.profile.infinite_pressure_radii:
-        found = found | (contact.loaded & (b <= contact.contact_radius) & counts(b))
-    return found
-
-
-def _infinite_radii(contact: LoadedContact, counts: Callable[[Parameter], Flags | bool]) -> str:
-    """Radii of infinite pressure in the largest contact that count in some case, as text."""
-    largest = extremes(contact.contact_radius)[1]
-    radii = contact.profile.infinite_pressure_radii
-    least = (extremes(b)[0] for b in radii if some(counts(b)))
-    return listed([f"{b:.12g}" for b in least if b <= largest])
 
 
 def listed(names: Sequence[str]) -> str:

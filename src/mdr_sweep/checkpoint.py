@@ -9,7 +9,6 @@ written.
 import fcntl
 import json
 import os
-import re
 import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -20,10 +19,11 @@ from typing import Any, Final
 import pyarrow as pa
 
 from mdr_sweep.spec import UsageError
+from mdr_sweep.tables import from_bytes, to_bytes
 
 _UNFINISHED: Final = ".unfinished"
-# Index and digest of a chunk.
-_CHUNK: Final = re.compile(r"(\d{12})-([0-9a-f]{16})\.arrow")
+_DIGITS: Final = 12
+"""Digits of the index of a chunk in its name."""
 
 
 class Checkpoint:
@@ -80,12 +80,8 @@ class Checkpoint:
 
     def put(self, index: int, batch: pa.RecordBatch) -> None:
         """Store a completed chunk."""
-        buffer = pa.BufferOutputStream()
-        with pa.ipc.new_file(buffer, batch.schema) as writer:
-            writer.write_batch(batch)
-        content = buffer.getvalue().to_pybytes()
-        name = f"{index:012d}-{self._digest(index, content)}.arrow"
-        with self._whole(self.folder / name) as path:
+        content = to_bytes(batch)
+        with self._whole(self.folder / self._name(f"{index:0{_DIGITS}}", content)) as path:
             path.write_bytes(content)
 
     def chunks(self, count: int) -> Iterator[pa.RecordBatch]:
@@ -95,18 +91,20 @@ class Checkpoint:
             index, content = next(stored, (count, b""))
             if index != expected:
                 raise _damaged(self.folder)
-            yield pa.ipc.open_file(content).get_batch(0)
+            yield from_bytes(content)
 
     def _stored(self) -> Iterator[tuple[int, bytes]]:
         """Yield index and content of the stored chunks in their order."""
         for path in sorted(self.folder.glob("*.arrow*")):
-            name, content = _CHUNK.fullmatch(path.name), path.read_bytes()
-            if not name or self._digest(int(name[1]), content) != name[2]:
+            index, content = path.name[:_DIGITS], path.read_bytes()
+            if path.name != self._name(index, content):
                 raise _damaged(path)
-            yield int(name[1]), content
+            yield int(index), content
 
-    def _digest(self, index: int, content: bytes) -> str:
-        return sha256(b"%s %d %s" % (self._sweep.encode(), index, content)).hexdigest()[:16]
+    def _name(self, index: str, content: bytes) -> str:
+        """Return the name of a chunk, with a digest of sweep, index and content."""
+        known = f"{self._sweep} {index} ".encode()
+        return f"{index}-{sha256(known + content).hexdigest()[:16]}.arrow"
 
     @contextmanager
     def result(self) -> Iterator[Path]:

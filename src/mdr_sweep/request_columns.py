@@ -13,10 +13,11 @@ import pyarrow.compute as pc
 from numpy.typing import NDArray
 
 from mdr_service.queries import QUERIES
-from mdr_service.schemas.flat import leaves
+from mdr_service.schemas.flat import Schema, leaves
 from mdr_service.schemas.quantities import SMALLEST
 from mdr_sweep.spec import Spec
 
+Rows = NDArray[np.intp]
 Values = NDArray[np.float64]
 Cells: TypeAlias = "pa.Array[Any]"
 # Decimal numbers, which Arrow converts to the nearest double.
@@ -24,38 +25,14 @@ _NUMBER: Final = r"^-?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$"
 # Members of a list are named by their index; `#` stands for any of them.
 _INDEX: Final = re.compile(r"(?<=\.)(0|[1-9][0-9]*)(?=\.|$)")
 # Fields that belong to results over the radius, which no sweep computes.
-_OVER_RADIUS: Final = frozenset({"radius", "points", "quantities"})
-
-
-@dataclass(frozen=True)
-class Field:
-    """Type of a field (``number``, ``string``, ``array`` of numbers), and bounds of a number."""
-
-    type: str
-    low: float
-    high: float
-
-    def accepts(self, values: Values) -> NDArray[np.bool_]:
-        """Return True for the values within the bounds, False for NaN."""
-        is_significant = (np.abs(values) >= SMALLEST) | (values == 0)
-        return np.asarray(is_significant & (values >= self.low) & (values <= self.high))
-
-    def fits(self, kind: pa.DataType) -> bool:
-        """Return True if a column of this Arrow type can contain the field."""
-        if self.type == "array":
-            is_numbers = pa.types.is_list(kind) and _is_number(kind.value_type)
-            return pa.types.is_null(kind) or is_numbers
-        if pa.types.is_dictionary(kind):
-            kind = kind.value_type
-        is_number = self.type == "number" and _is_number(kind)
-        return is_number or _is_text(kind) or pa.types.is_null(kind)
+_OVER_RADIUS: Final = frozenset({"radius", "points", "quantities.#"})
 
 
 @dataclass(frozen=True)
 class Column:
     """A field of all cases of a batch."""
 
-    field: Field
+    schema: Schema
     cells: Cells
     given: NDArray[np.bool_]
     """False where the cell is empty, so that the field is absent from the request."""
@@ -67,38 +44,57 @@ class Column:
         number = float(self.values[row])
         return self.cells[row].as_py() if isnan(number) else number
 
+    def accepts(self, rows: Rows) -> NDArray[np.bool_]:
+        """Return True for the rows whose number is within the bounds of the field."""
+        values = self.values[rows]
+        is_significant = (np.abs(values) >= SMALLEST) | (values == 0)
+        low, high = self.schema.get("minimum", -inf), self.schema.get("maximum", inf)
+        return np.asarray(is_significant & (values >= low) & (values <= high))
+
     def is_unreadable(self, row: int) -> bool:
         """Return True if the cell of a number contains text that is not a number."""
-        is_text = self.field.type == "number" and _is_text(self.cells.type)
+        is_text = self.schema["type"] == "number" and _is_text(self.cells.type)
         return bool(is_text and self.given[row] and isnan(self.values[row]))
 
     @property
     def output(self) -> Cells:
         """Column of the result: numbers are doubles, and NaN becomes an empty cell."""
-        if self.field.type == "number":
+        if self.schema["type"] == "number":
             return pa.array(self.values, mask=np.isnan(self.values))
-        return pc.cast(self.cells, pa.string()) if self.field.type == "string" else self.cells
+        is_text = self.schema["type"] == "string"
+        return pc.cast(self.cells, pa.string()) if is_text else self.cells
 
 
-def field(query: str, name: str) -> Field | None:
-    """Return the field of a query with a dotted name; None if there is none."""
+def field(query: str, name: str) -> Schema | None:
+    """Return the JSON schema of a field of a query with a dotted name; None if there is none.
+
+    Its `type` is `number`, `integer`, `string`, or `array` of numbers.
+    """
     return _fields(query).get(_INDEX.sub("#", name))
 
 
 @cache
-def _fields(query: str) -> Mapping[str, Field]:
-    """Return the fields of a request model, as its JSON schema describes them."""
-    found: dict[str, Field] = {}
+def _fields(query: str) -> Mapping[str, Schema]:
+    found: dict[str, Schema] = {}
     for name, leaf in leaves(QUERIES[query].request.model_json_schema()):
-        # A load takes a number or a list; a case of a sweep has one number.
-        if name not in _OVER_RADIUS and not (name in found and leaf["type"] == "array"):
-            low, high = leaf.get("minimum", -inf), leaf.get("maximum", inf)
-            if leaf.get("items", {}).get("type") == "string":
-                # Names have a column each, because `flat` gives each of them a name.
-                found[f"{name}.#"] = Field("string", low, high)
-            else:
-                found[name] = Field(leaf["type"], low, high)
-    return found
+        if leaf.get("items", {}).get("type") == "string":
+            # Names have a column each, because `flat` gives each of them a name.
+            found[f"{name}.#"] = leaf["items"]
+        elif not (name in found and leaf["type"] == "array"):
+            # A load takes a number or a list; a case of a sweep has one number.
+            found[name] = leaf
+    return {name: leaf for name, leaf in found.items() if name not in _OVER_RADIUS}
+
+
+def fits(own: Schema, kind: pa.DataType) -> bool:
+    """Return True if a column of an Arrow type can contain the field."""
+    if own["type"] == "array":
+        is_numbers = pa.types.is_list(kind) and _is_number(kind.value_type)
+        return pa.types.is_null(kind) or is_numbers
+    if pa.types.is_dictionary(kind):
+        kind = kind.value_type
+    is_number = own["type"] == "number" and _is_number(kind)
+    return is_number or _is_text(kind) or pa.types.is_null(kind)
 
 
 def read_columns(spec: Spec, batch: pa.RecordBatch) -> dict[str, Column]:
@@ -110,7 +106,7 @@ def read_columns(spec: Spec, batch: pa.RecordBatch) -> dict[str, Column]:
             cells = given
             if pa.types.is_dictionary(cells.type):
                 cells = pc.cast(cells, cells.type.value_type)
-            is_number = own.type == "number"
+            is_number = own["type"] == "number"
             values = _numbers(cells) if is_number else np.full(len(cells), np.nan)
             found[name] = Column(own, cells, np.asarray(cells.is_valid()), values)
     return found

@@ -1,6 +1,5 @@
 """Time and disk space of a sweep, extrapolated from a sample of its cases."""
 
-from collections.abc import Iterator
 from importlib import import_module
 from math import log2
 from time import process_time
@@ -33,15 +32,15 @@ class Estimate(NamedTuple):
     disk: float
     """Size of the chunks and the result together, which both exist at the end [bytes]."""
 
-    @property
-    def lines(self) -> Iterator[str]:
-        """Printed lines of the estimate."""
-        where = f"{self.processes} worker processes" if self.processes > 1 else "this process"
-        yield f"cases    {self.rows:,}"
-        yield f"chunks   {-(-self.rows // self.chunk):,} of {self.chunk:,} cases"
-        time = f"{self.seconds:,.1f} s ({self.seconds / 3600:,.1f} h)"
-        yield f"time     about {time} on an idle machine, in {where}"
-        yield f"disk     at most {self.disk / 1024**2:,.0f} MiB during the sweep"
+    def __str__(self) -> str:
+        place = f"{self.processes} worker processes" if self.processes > 1 else "this process"
+        return (
+            f"cases    {self.rows:,}\n"
+            f"chunks   {-(-self.rows // self.chunk):,} of {self.chunk:,} cases\n"
+            f"time     about {self.seconds:,.1f} s ({self.seconds / 3600:,.1f} h) on an idle "
+            f"machine, in {place}\n"
+            f"disk     at most {self.disk / 1024**2:,.0f} MiB during the sweep\n"
+        )
 
 
 def estimate(spec: Spec, source: tables.Source, workers: int | None) -> Estimate:

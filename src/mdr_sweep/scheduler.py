@@ -10,6 +10,7 @@ import pyarrow as pa
 
 from mdr_sweep import vectorized
 from mdr_sweep.spec import Spec, SweepError, versions
+from mdr_sweep.tables import from_bytes, to_bytes
 
 Chunk = tuple[int, pa.RecordBatch]
 """Index of a chunk, and its cases or the rows of the result."""
@@ -57,7 +58,7 @@ def in_workers(
             limit = _AHEAD * max(sum(client.nthreads().values()), 1)
             solved = distributed.as_completed(with_results=True)
             for index, batch in chunks:
-                work = spec, versions(), index, _to_bytes(batch)
+                work = spec, versions(), index, to_bytes(batch)
                 solved.add(client.submit(solve, *work, pure=False))
                 if solved.count() >= limit:
                     yield next(solved)[1]
@@ -84,13 +85,4 @@ def solve(spec: Spec, expected: dict[str, str], index: int, batch: bytes) -> Chu
     """
     if versions() != expected:
         raise SweepError(f"a worker has {versions()}, the client {expected}")
-    with pa.ipc.open_stream(batch) as reader:
-        return index, vectorized.solve(spec, reader.read_next_batch())
-
-
-def _to_bytes(batch: pa.RecordBatch) -> bytes:
-    """Return a batch as an Arrow stream; pickling a slice would store the whole array."""
-    sink = pa.BufferOutputStream()
-    with pa.ipc.new_stream(sink, batch.schema) as writer:
-        writer.write_batch(batch)
-    return bytes(sink.getvalue())
+    return index, vectorized.solve(spec, from_bytes(batch))

@@ -19,7 +19,7 @@ from mdr_service.problems import MAX_ERRORS
 from mdr_service.schemas.flat import flat, nested
 from mdr_sweep import resources, scheduler, vectorized
 from mdr_sweep.checkpoint import Checkpoint
-from mdr_sweep.request_columns import field
+from mdr_sweep.request_columns import field, fits
 from mdr_sweep.spec import (
     ERROR,
     ONLY_IF_NAMED,
@@ -47,7 +47,7 @@ def run(arguments: Namespace) -> int:
     _check_target(arguments, checkpoint)
     estimate = resources.estimate(spec, source, arguments.workers)
     if arguments.plan:
-        sys.stdout.write("".join(f"{line}\n" for line in estimate.lines))
+        sys.stdout.write(str(estimate))
         return SweepStatus.DONE
     known = {} if arguments.restart else checkpoint.manifest
     chunk = arguments.chunk or known.get("chunk") or estimate.chunk
@@ -84,7 +84,7 @@ def specified(arguments: Namespace) -> tuple[Spec, Source]:
     query = arguments.query
     template = _template(arguments.template)
     axes = {name: text for name, text in template.items() if str(text).count(":") >= 2}
-    axes |= dict(map(_axis, arguments.grid))
+    axes |= {each.partition("=")[0]: each.partition("=")[2] for each in arguments.grid}
     if bool(axes) == bool(arguments.table):
         raise UsageError("give one of --table and axes (--grid, or START:STOP:N in the template)")
     if any(number is not None and number < 1 for number in (arguments.workers, arguments.chunk)):
@@ -112,8 +112,8 @@ def specified(arguments: Namespace) -> tuple[Spec, Source]:
     listed = [name for name, value in constants.items() if isinstance(value, list)]
     for name, kind in (kinds | dict.fromkeys(listed, pa.list_(pa.float64()))).items():
         own = field(query, name)
-        if own and not own.fits(kind):
-            raise UsageError(f"{name} holds values of type {kind}; a case has one {own.type}")
+        if own and not fits(own, kind):
+            raise UsageError(f"{name} holds values of type {kind}; a case has one {own['type']}")
     return spec, source
 
 
@@ -155,13 +155,6 @@ def _template(path: Path | None) -> dict[str, Any]:
     if not isinstance(request, Mapping):
         raise UsageError(f"{path} does not hold a JSON object")
     return flat(request)
-
-
-def _axis(text: str) -> tuple[str, str]:
-    name, sign, values = text.partition("=")
-    if not sign:
-        raise UsageError(f"--grid: {text!r} is not FIELD=START:STOP:N")
-    return name, values
 
 
 def _names(text: str) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pv
+import pyarrow.dataset as ds
 import pyarrow.parquet as pq
 from pyarrow.lib import concat_batches  # `pa.concat_batches`, which the type stubs lack.
 
@@ -51,45 +52,36 @@ class Table:
     """Cases in a file: Parquet, or CSV, whose cells are all read as text."""
 
     def __init__(self, path: Path) -> None:
-        self.path = path
         try:
             if path.suffix == ".parquet":
-                with pq.ParquetFile(path) as file:
-                    self.schema, self.rows = file.schema_arrow, file.metadata.num_rows
+                # Read-ahead would keep everything that was read in memory to the end.
+                options = ds.ParquetFragmentScanOptions(pre_buffer=False)
+                form: ds.FileFormat = ds.ParquetFileFormat(default_fragment_scan_options=options)
+                self._data = ds.dataset(path, format=form)
+                self.rows = self._data.count_rows()
             else:
-                with self._csv() as reader:
-                    self.schema = reader.schema
-                    self.rows = sum(batch.num_rows for batch in reader)
+                names = ds.dataset(path, format="csv").schema.names
+                convert = pv.ConvertOptions(strings_can_be_null=True, null_values=[""])
+                schema = pa.schema([(name, pa.string()) for name in names])
+                form = ds.CsvFileFormat(convert_options=convert)
+                self._data = ds.dataset(path, schema, format=form)
+                # Conversion finds text that is not UTF-8.
+                self.rows = sum(batch.num_rows for batch in self._data.to_batches())
+            self.schema = self._data.schema
             with path.open("rb") as binary:
                 self.identity = file_digest(binary, "sha256").hexdigest()
         except (OSError, pa.ArrowException) as error:
             raise UsageError(f"cannot read {path}: {error}") from None
-        names = self.schema.names
-        if len(set(names)) < len(names):
-            raise UsageError(f"{path} has two columns {max(names, key=names.count)}")
 
     def batches(self, rows: int, indices: Collection[int]) -> Iterator[pa.RecordBatch]:
         """Yield the batches of `rows` cases with the given indices, ascending."""
         wanted = frozenset(indices)
-        for index, batch in enumerate(regrouped(self._read(), rows)):
+        read = self._data.to_batches(
+            batch_size=ROW_GROUP, use_threads=False, batch_readahead=0, fragment_readahead=0
+        )
+        for index, batch in enumerate(regrouped(read, rows)):
             if index in wanted:
                 yield batch
-
-    def _read(self) -> Iterator[pa.RecordBatch]:
-        if self.path.suffix == ".parquet":
-            # Read-ahead would keep everything that was read in memory to the end.
-            with pq.ParquetFile(self.path, pre_buffer=False) as file:
-                yield from file.iter_batches(batch_size=ROW_GROUP, use_threads=False)
-        else:
-            with self._csv() as reader:
-                yield from reader
-
-    def _csv(self) -> pv.CSVStreamingReader:
-        read = pv.ReadOptions(use_threads=False)
-        with pv.open_csv(self.path, read_options=read) as head:
-            kinds = dict.fromkeys(head.schema.names, pa.string())
-        convert = pv.ConvertOptions(column_types=kinds, strings_can_be_null=True, null_values=[""])
-        return pv.open_csv(self.path, read_options=read, convert_options=convert)
 
 
 Source: TypeAlias = Grid | Table
@@ -141,6 +133,20 @@ def regrouped(batches: Iterable[pa.RecordBatch], rows: int) -> Iterator[pa.Recor
             held, size = [whole.slice(end)], size - end
     if size:
         yield concat_batches(held)
+
+
+def to_bytes(batch: pa.RecordBatch) -> bytes:
+    """Return a batch as an Arrow stream; pickling a slice would store the whole array."""
+    sink = pa.BufferOutputStream()
+    with pa.ipc.new_stream(sink, batch.schema) as writer:
+        writer.write_batch(batch)
+    return sink.getvalue().to_pybytes()
+
+
+def from_bytes(content: bytes) -> pa.RecordBatch:
+    """Return the batch of an Arrow stream."""
+    with pa.ipc.open_stream(content) as reader:
+        return reader.read_next_batch()
 
 
 def write(

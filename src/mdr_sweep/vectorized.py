@@ -3,8 +3,8 @@
 Cases that such a call cannot solve are solved one by one.
 """
 
+import re
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from math import nan
 from typing import Any, Final
 
@@ -12,29 +12,29 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from mdr_core import normal, tangential, validity
+from mdr_core import validity
 from mdr_core.errors import InputError
-from mdr_core.normal import ACCURACY, NormalContact
-from mdr_core.profiles import KINDS
+from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_service import problems
 from mdr_service.queries import QUERIES
-from mdr_service.queries.contacts import body, control, friction, yields
-from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
+from mdr_service.queries.contacts import yields
+from mdr_service.schemas.contacts import Query
 from mdr_service.schemas.flat import nested
-from mdr_sweep.request_columns import Column, Values, read_columns
+from mdr_sweep.request_columns import Column, Rows, Values, read_columns
 from mdr_sweep.spec import ERROR, TEXTS, WARNING, Spec
 
-Rows = NDArray[np.intp]
 Results = dict[str, NDArray[Any]]
 Columns = Mapping[str, Column]
+Contact = NormalContact | TangentialContact
 # Queries that the core solves for arrays of profiles, moduli and loads.
 _VECTORIZED: Final = frozenset({"normal", "tangential"})
-# Fields, or groups of fields, whose numbers can be arrays over the cases.
-_ARRAYS: Final = (
-    *("profile.", "load.", "tangential.", "friction_coefficient"),
-    *("material.e_star", "material.g_star"),
+# Fields whose numbers can be arrays over the cases of one call; members of lists cannot.
+_ARRAYS: Final = re.compile(
+    r"(profile|load|tangential)\.\w+|friction_coefficient|material\.[eg]_star"
 )
+# Members of a material whose contacts are solved one by one.
+_ALONE: Final = {"work_of_adhesion", "layer"}
 
 
 def solve(spec: Spec, batch: pa.RecordBatch) -> pa.RecordBatch:
@@ -68,26 +68,21 @@ def solve(spec: Spec, batch: pa.RecordBatch) -> pa.RecordBatch:
 
 def _is_array(name: str, column: Column) -> bool:
     """Return True if a field can be an array over the cases of one call."""
-    in_list = name.startswith(("profile.terms.", "profile.radii."))
-    return column.field.type == "number" and name.startswith(_ARRAYS) and not in_list
+    return column.schema["type"] == "number" and _ARRAYS.fullmatch(name) is not None
 
 
 def _groups(columns: Columns, size: int) -> Iterator[Rows]:
     """Yield groups of rows with equal fields, and equal values of those that are not arrays."""
-    keys: dict[str, Any] = {}
+    keys: list[list[Any]] = [[None] * size]
     for name, column in columns.items():
         if not _is_array(name, column):
-            is_list = column.field.type == "array"
-            keys[name] = list(map(repr, column.cells.to_pylist())) if is_list else column.cells
+            keys.append(list(map(repr, column.cells.to_pylist())))
         elif not column.given.all():
-            keys[name] = column.given
-    rows = np.arange(size)
-    if not keys:
-        yield rows
-        return
-    grouped = pa.table({**keys, "row": rows}).group_by([*keys], use_threads=False)
-    for group in grouped.aggregate([("row", "list")])["row_list"]:
-        yield np.array(group.as_py())
+            keys.append(column.given.tolist())
+    groups: dict[Any, list[int]] = {}
+    for row, key in enumerate(zip(*keys, strict=True)):
+        groups.setdefault(key, []).append(row)
+    return map(np.array, groups.values())
 
 
 def _request(spec: Spec, columns: Columns, row: int) -> dict[str, Any]:
@@ -103,18 +98,19 @@ def _solve_group(spec: Spec, columns: Columns, rows: Rows) -> tuple[Rows, Result
         if _is_array(name, column) and column.given[rows[0]]
     }
     for column in swept.values():
-        rows = rows[column.field.accepts(column.values[rows])]
+        rows = rows[column.accepts(rows)]
     while rows.size:
         try:
-            query: Any = _validated(spec, _request(spec, columns, int(rows[0])))
-            if query.material.has("work_of_adhesion"):
+            query = _validated(spec, _request(spec, columns, int(rows[0])))
+            if query.material.model_fields_set & _ALONE:
                 break
             arrays = {name: column.values[rows] for name, column in swept.items()}
             with np.errstate(all="ignore"):
-                solved, results = _call(spec, query, arrays, rows.size)
+                source = QUERIES[spec.query].solve(_with_arrays(query, arrays))
+                solved, results = _results(spec, query, source, rows.size)
             return rows[solved], {name: values[solved] for name, values in results.items()}
         except InputError as error:
-            rejected = np.ravel(np.asarray(True if error.cases is None else error.cases))
+            rejected = np.ravel(error.cases)
             if rejected.shape != rows.shape or not rejected.any():
                 break
             rows = rows[~rejected]
@@ -123,52 +119,37 @@ def _solve_group(spec: Spec, columns: Columns, rows: Rows) -> tuple[Rows, Result
     return rows[:0], {}
 
 
-def _call(
-    spec: Spec, query: NormalQuery, swept: Mapping[str, Values], size: int
+def _with_arrays(query: Query, swept: Mapping[str, Values]) -> Query:
+    """Return a valid request with arrays over the cases in the swept fields."""
+    changes = {
+        name: getattr(query, name).model_copy(update=part) if isinstance(part, dict) else part
+        for name, part in nested(swept).items()
+    }
+    return query.model_copy(update=changes)
+
+
+def _results(
+    spec: Spec, query: Query, source: Contact, size: int
 ) -> tuple[NDArray[np.bool_], Results]:
-    """Solve the cases that differ from a valid request in the `swept` fields only."""
-    given: dict[str, Any] = {name.rpartition(".")[2]: values for name, values in swept.items()}
-    if any(name.startswith("profile.") for name in swept):
-        kind: Any = KINDS[query.profile.kind]
-        names = kind.__match_args__
-        given["profile"] = kind(*(given.get(name, getattr(query.profile, name)) for name in names))
-
-    moduli = {name: given.pop(name) for name in ("e_star", "g_star") if name in given}
-    if moduli:
-        given |= dict.fromkeys(("e_star", "g_star"), replace(query.material.effective, **moduli))
-
-    def with_arrays(constants: dict[str, Any]) -> dict[str, Any]:
-        return {name: given.get(name, value) for name, value in constants.items()}
-
-    contact = normal.solve(**with_arrays(body(query) | control(query.load)))
-    source: NormalContact | TangentialContact = contact
-    if isinstance(query, TangentialQuery):
-        source = tangential.solve(
-            contact, **with_arrays(friction(query) | control(query.tangential))
-        )
+    """Return the results of the cases of one call, and True for those that it solves."""
+    contact = source.normal
     results: Results = {WARNING: _warnings(query, source, size)}
     # Cases with overflow or infinite pressures are solved one by one.
     solved = np.array(np.broadcast_to(np.isfinite(contact.mean_pressure), (size,)))
     for name in spec.quantities:
         values: Any = getattr(source if hasattr(type(source), name) else contact, name)
-        if values is None:
-            # These profiles have no data error.
-            values = nan
-        elif name not in TEXTS:
+        if values is not None and name not in TEXTS:
             solved &= np.isfinite(values)
-        results[name] = np.broadcast_to(values, (size,))
+        # Profiles that are not tables have no data error.
+        results[name] = np.broadcast_to(nan if values is None else values, (size,))
     return solved, results
 
 
-def _warnings(
-    query: NormalQuery, source: NormalContact | TangentialContact, size: int
-) -> NDArray[Any]:
+def _warnings(query: Query, source: Contact, size: int) -> NDArray[Any]:
     """Return the codes of the warnings of each case, in the service's order."""
-    contact = source.normal
-    flags: dict[str, Any] = {each.code: each.where for each in validity.findings(source)}
-    flags |= {each.code: each.where for each in contact.findings}
-    flags["accuracy"] = source.error_estimates > ACCURACY
-    flags |= {each.code: each.where for each in yields(query, source)}
+    found = [*validity.findings(source), *source.normal.findings]
+    found += [validity.inaccurate(source.error_estimates), *yields(query, source)]
+    flags = {each.code: each.where for each in found}
     codes = np.full(size, None)
     for code, where in flags.items():
         here = np.broadcast_to(where, (size,))

@@ -86,6 +86,14 @@ def test_errors_name_the_curve_or_the_option(
     assert message in capsys.readouterr().err
 
 
+def test_names_of_units_in_a_picture_are_the_units_option(tmp_path: Path, capsys: Capture) -> None:
+    curve = tmp_path / "curve.csv"
+    curve.write_text("d [nm];F [N]\n0;0\n1;1\n2;3\n", "utf-8")
+    given = ["fit", str(curve), *FIT_OPTIONS[:4], "--format", "svg", "--units", "mm"]
+    assert main(given) == 2
+    assert capsys.readouterr().err.startswith("mdr fit: --units: must be three names")
+
+
 def test_drift_rate_option_uses_times_of_file(tmp_path: Path) -> None:
     curve, result = tmp_path / "curve.csv", tmp_path / "fit.json"
     rows = "".join(f"{i / 60:.9f};{11 * i - 10};{force}\n" for i, force in enumerate(FORCES))
@@ -173,19 +181,23 @@ def test_completion_knows_commands_and_options(shell: str, capsys: Capture) -> N
 def test_every_help_shows_an_example(name: str, capsys: Capture) -> None:
     with pytest.raises(SystemExit):
         main([name, "--help"])
-    assert f"example:\n  {COMMANDS[name].example}\n" in capsys.readouterr().out
+    shown = f"mdr {name} {COMMANDS[name].example}".rstrip()
+    assert f"example:\n  {shown}" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
-    "example", [one.example for one in COMMANDS.values() if "--kind" in one.example]
+    "given",
+    [
+        [name, *shlex.split(one.example)]
+        for name, one in COMMANDS.items()
+        if "--kind" in one.example
+    ],
 )
 def test_examples_of_options_run(
-    example: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+    given: list[str], tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("curve.csv").write_text("depth [nm],load [µN]\n0,0\n10,1\n20,2.8\n30,5.2\n", "utf-8")
-    program, *given = shlex.split(example)
-    assert program == "mdr"
     assert command.main(given) == 0
     assert capsys.readouterr().out
 

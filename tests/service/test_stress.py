@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mdr_core import fields, normal, tangential
-from mdr_core.normal import ACCURACY
+from mdr_core.validity import ACCURACY
 from mdr_service.queries.contacts import singular
 from mdr_service.settings import SETTINGS
 from tests.conftest import Client

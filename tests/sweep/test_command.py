@@ -95,7 +95,7 @@ def test_fields_have_the_types_of_the_request_models() -> None:
         "load.normal_force": "number",
     }
     result = {name: field("tangential", name) for name in names}
-    assert {name: each and each.type for name, each in result.items()} == names
+    assert {name: each and each["type"] for name, each in result.items()} == names
     unknown = ("profile.colour", "profile.terms.x.exponent", "profile.terms.01.exponent", "load")
     assert not [
         name
@@ -245,6 +245,8 @@ def test_invalid_sweep_is_rejected_at_once(
     Path("unknown.json").write_text('{"load": {"pressure": 1}, "friction_coefficient": 0.3}')
     Path("list.json").write_text('{"load": {"normal_force": [1, 2]}}')
     Path("there.csv").touch()
+    Path("latin.csv").write_text("load.normal_force\ncaf\xe9\n", "latin-1")
+    Path("twice.csv").write_text("load.normal_force,load.normal_force\n1,2\n")
     Path("folder.csv").mkdir()
     write("unknown.parquet", {"name": ["a"], "load.farce": [1.0], "load.normal_force": [1.0]})
     write("result.parquet", {"contact_radius": [1.0]})

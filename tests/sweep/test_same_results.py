@@ -57,6 +57,7 @@ BALL: Row = {
 }
 ON_BASE = {name: BALL[name] for name in ("profile.kind", "profile.radius", "material.e_star")}
 ON_BASE |= {"load.normal_force": 10.0, "material.layer.base": "frictionless"}
+FLANK: Row = {"profile.kind": "cone", "material.e_star": 1e11}
 CURVE = flat(EXAMPLES["fit"]["hydrogel"]["value"])
 LOOP = flat(EXAMPLES["tangential_fit"]["ball_on_glass"]["value"])
 
@@ -87,6 +88,8 @@ LOOP = flat(EXAMPLES["tangential_fit"]["ball_on_glass"]["value"])
         ("fit", CURVE | {"layer.base": "frictionless"}, "layer.thickness", [1e4, 1e3, 10.0]),
         ("tangential_fit", LOOP, "rig_compliance", [None, 0.0, -1.0]),
         ("normal", ON_BASE, "material.layer.thickness", [1e-2, 1e-4, 1e-9]),
+        ("normal", FLANK | {"profile.half_angle": 70.3}, "load.normal_force", [1.0, 9.0, -1.0]),
+        ("normal", FLANK | {"load.normal_force": 1.0}, "profile.half_angle", [70.3, 1.0, 95.0]),
     ],
 )
 def test_rows_of_other_queries_equal_the_responses(

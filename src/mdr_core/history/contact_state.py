@@ -14,7 +14,7 @@ from mdr_core.history.slip_layout import NORMAL
 from mdr_core.history.slip_memory import Polyline, VertexTree, read_only
 from mdr_core.history.step_results import SHORT, TractionVertices
 from mdr_core.interval_moments import IntervalMoments, interval_moments
-from mdr_core.materials import Material, normal_modulus, shear_modulus
+from mdr_core.materials import Material, modulus
 from mdr_core.profiles import Profile
 from mdr_core.results import Results
 from mdr_core.typing import Array
@@ -242,12 +242,12 @@ def unloaded(
     """
     require_type("profile", profile, Profile, "a profile such as Paraboloid(0.01)")
     require_single_profile(profile.swept)
-    e_star, g_star = normal_modulus(e_star), shear_modulus(g_star)
-    require_single_positive(("material", "e_star"), e_star)
-    require_single_positive(("material", "g_star"), g_star)
+    normal, shear = modulus("e_star", e_star), modulus("g_star", g_star)
+    require_single_positive(("material", "e_star"), normal)
+    require_single_positive(("material", "g_star"), shear)
     require_single_positive(("friction_coefficient",), friction_coefficient)
     polyline = slip_memory.separated(0.0, 0.0)
-    return ContactState(profile, e_star, g_star, friction_coefficient, polyline, polyline)
+    return ContactState(profile, normal, shear, friction_coefficient, polyline, polyline)
 
 
 def advance(

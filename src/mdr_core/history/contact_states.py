@@ -16,14 +16,14 @@ from mdr_core.history.slip_layout import COLUMNS
 from mdr_core.history.slip_memory import Polylines, read_only
 from mdr_core.history.step_results import REGIMES, TractionVertices, decides_regime, regime_codes
 from mdr_core.interval_moments import IntervalMoments, interval_moments
-from mdr_core.materials import Material, normal_modulus, shear_modulus
+from mdr_core.materials import Material, modulus
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import (
     as_numbers,
+    as_positive,
     require_finite,
     require_inside,
-    require_positive,
     require_type,
 )
 
@@ -168,14 +168,14 @@ def unloaded_many(
     """
     require_type("profile", profile, Profile, "a profile such as Paraboloid([0.01, 0.02])")
     given: dict[tuple[str, ...], Any] = {
-        ("material", "e_star"): normal_modulus(e_star),
-        ("material", "g_star"): shear_modulus(g_star),
+        ("material", "e_star"): modulus("e_star", e_star),
+        ("material", "g_star"): modulus("g_star", g_star),
         ("friction_coefficient",): friction_coefficient,
     }
     given |= {("profile", name): profile.parameters[name] for name in profile.swept}
     values, count = _per_contact(given)
     for path, value in given.items():
-        require_positive(path, value)
+        as_positive(path, value)
     none = np.zeros(count, dtype=np.intp)
     lines = Polylines(read_only(np.zeros((0, COLUMNS))), none, np.zeros((2, count)))
     e_star, g_star, friction, *_ = values

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebpts1, chebvander
 from scipy.interpolate import CubicHermiteSpline
 
-from mdr_core.elementwise import full, number
+from mdr_core.elementwise import number
 from mdr_core.errors import InputError
 from mdr_core.layer.equation import largest_coordinate, states
 from mdr_core.layer.solver import solve
@@ -48,8 +48,6 @@ class DepthCurve:
 
         Parameters: the profile, the layer, and the depth [length].
         """
-        if profile.is_flat_punch:
-            return cls(profile, layer, np.inf)
         with suppress(InputError):
             contact = solve(profile, Material(1.0, layer=layer), indentation_depth=depth)
             return cls(profile, layer, float(contact.coordinate))
@@ -58,6 +56,8 @@ class DepthCurve:
     @cached_property
     def _edges(self) -> Array:
         """Contact coordinates of the breaks, from 0 to the largest one."""
+        if self.profile.is_flat_punch:
+            return np.array([0.0, self.end])
         breaks = self.profile.coordinate_from_radius(np.array(self.profile.breaks, dtype=float))
         return np.unique([0.0, *breaks[(breaks > 0) & (breaks < self.end)], self.end])
 
@@ -109,22 +109,15 @@ class DepthCurve:
     @property
     def error(self) -> float:
         """Estimated error by the interpolation, relative to the largest force [1]."""
-        if self.profile.is_flat_punch:
-            return 0.0
         return self._parts[2] + 2 * float(np.abs(self._ratios[-2:]).max())
 
     @cached_property
     def deepest(self) -> float:
-        """Largest depth [length], infinite under a flat punch."""
-        if self.profile.is_flat_punch:
-            return np.inf
+        """Largest depth [length]."""
         return float(self._parts[0][-1])
 
     def __call__(self, depth: Array) -> tuple[Array, Array]:
         """Return F_N/E* [length^2] and its slope [length] at depths from 0 to the deepest."""
-        if self.profile.is_flat_punch:
-            stiffness = states(self.profile, self.layer, np.ones(1)).stiffness[0]
-            return stiffness * depth, full(stiffness, depth)
         depths, splines, _ = self._parts
         force, slope = 0 * depth, 0 * depth
         place = np.clip(np.searchsorted(depths, depth) - 1, 0, len(splines) - 1)

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ellipkm1
 
-from mdr_core import conditioning, validity
+from mdr_core import conditioning, materials, validity
 from mdr_core.doubles import EPS
 from mdr_core.elementwise import in_blocks, where
-from mdr_core.materials import Material, twist_modulus
+from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile, Tabulated
 from mdr_core.quadrature import composite_rule
@@ -195,7 +195,7 @@ def solve(
     0.897338429
     """
     require_type("contact", contact, NormalContact, NEEDED)
-    modulus = as_positive(("material", "shear_modulus"), twist_modulus(shear_modulus))
+    modulus = materials.modulus("shear_modulus", shear_modulus)
     friction_coefficient = as_positive(("friction_coefficient",), friction_coefficient)
     loads = (torque, rotation, stick_radius)
     name, given = only_one(("torsion",), dict(zip(CONTROLS, loads, strict=True)))

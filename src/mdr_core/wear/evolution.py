@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import tangential, validity
 from mdr_core.errors import AccuracyError, InputError, Notice
-from mdr_core.materials import Material, shear_modulus
+from mdr_core.materials import Material, modulus
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
@@ -293,7 +293,6 @@ def solve(
     [3.667e-07, 0.7593]
     """
     require_type("contact", contact, NormalContact, "a contact from normal.solve")
-    g_star = shear_modulus(g_star)
     name, size = one_amplitude(tangential_displacement, tangential_force)
     require_single_positive(("wear_coefficient",), wear_coefficient)
     require_tolerance(rtol, TIGHTEST_INTEGRATION)
@@ -301,7 +300,7 @@ def solve(
     if not COARSEST <= resolution <= FINEST:
         raise InputError(("resolution",), f"must lie from {COARSEST} to {FINEST}")
     single(("load",), contact.contact_radius)
-    single(("material", "g_star"), g_star)
+    single(("material", "g_star"), modulus("g_star", g_star))
     single(("friction_coefficient",), friction_coefficient)
     single(("tangential", name), size)
     tangential_contact = tangential.solve(contact, g_star, friction_coefficient, **{name: size})

@@ -19,7 +19,7 @@ from mdr_core.errors import DefectError, InputError, Notice
 from mdr_core.history import LoadHistory
 from mdr_core.impact import Impact
 from mdr_core.materials import UNUSABLE
-from mdr_core.normal import ACCURACY, NormalContact, inaccurate
+from mdr_core.normal import NormalContact
 from mdr_core.results import Results
 from mdr_core.tangential import TangentialContact
 from mdr_core.torsion import TorsionalContact
@@ -78,7 +78,10 @@ def profile(model: Profile) -> profiles.Profile:
         given["slope"] = profiles.slope_of_half_angle(half_angle)
     if model.kind == "series":
         given["terms"] = tuple(profiles.PowerTerm(**vars(term)) for term in model.terms)
-    return _by_parameters(model.kind, **given)
+    # Parameters that are arrays over the cases of a sweep cannot be keys of a cache.
+    is_swept = any(isinstance(value, np.ndarray) for value in given.values())
+    make = _by_parameters.__wrapped__ if is_swept else _by_parameters
+    return make(model.kind, **given)
 
 
 # The cache pays off, because fitting a table takes up to a hundred times as long as a contact, and
@@ -254,8 +257,7 @@ def response(
     else:
         # The warnings of the source cover its own error, not the error of fields.
         found = [notice for notice in found if notice.code != "accuracy"]
-        if error > ACCURACY:
-            found.append(inaccurate(error))
+        found += validity.notices([validity.inaccurate(error)])
     about = {
         "method": method or source.method,
         "sources": [*dict.fromkeys((*source.sources, *sources_of(*values, *(unchecked or ()))))],
