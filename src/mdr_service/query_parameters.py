@@ -258,6 +258,8 @@ def parameters_of(model: type[contacts.Query]) -> type[Parameters]:
 
 
 PARAMETERS: Final = {
-    name: parameters_of(kind.request) for name, kind in QUERIES.items() if kind.by_parameters
+    name: parameters_of(kind.request)
+    for name, kind in QUERIES.items()
+    if kind.request.by_parameters
 }
 """Parameters of the queries that consist of numbers, by query."""

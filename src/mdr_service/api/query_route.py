@@ -36,7 +36,7 @@ async def _answer(
 ) -> Response:
     """Return the response; a long or unparsed query is answered by a compute process."""
     arguments = name, query, *form, members
-    if isinstance(query, contacts.Query) and form[0] not in PICTURES and is_short(name, query):
+    if isinstance(query, contacts.Query) and form[0] not in PICTURES and is_short(query):
         content = respond(*arguments)
     else:
         content = await request.app.state.compute.run_in_process(respond, *arguments)

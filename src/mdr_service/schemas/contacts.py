@@ -296,6 +296,10 @@ class Query(Strict):
     """Axes of a picture, unless the result has radii."""
     refused: ClassVar[dict[str, str]] = {}
     """Members of other queries that this one cannot have, with the reason."""
+    by_parameters: ClassVar[bool] = False
+    """True if a request can consist of numbers, and thus of parameters of a URL."""
+    is_long: ClassVar[bool] = False
+    """True if every query runs in a compute process."""
 
     profile: Profile
     material: Material
@@ -324,6 +328,8 @@ class Query(Strict):
 
 class NormalQuery(Query):
     """Profile pressed into an elastic half-space without friction."""
+
+    by_parameters = True
 
     holds_within: float = HOLDS_WITHIN
     load: Load = Field(description="Exactly one control, such as the depth or the force.")

@@ -36,6 +36,7 @@ class FitQuery(Query):
     """Measured curve of a contact of known profile, and the parameters to fit."""
 
     axes = Axes("indentation_depth", ("normal_force", "residual"), is_measured=True)
+    is_long = True
 
     material: Material = left_out("Elastic constants, if `e_star` is not fitted.")
     indentation_depth: list[Signed] = quantity(
@@ -92,6 +93,7 @@ class LoopQuery(Query):
         in_order=True,
         is_measured=True,
     )
+    is_long = True
 
     indentation_depth: float = positive("length", "Indentation depth d", default=None)
     normal_force: float = positive(

@@ -182,6 +182,7 @@ class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles
     """Contact with friction on a load path."""
 
     axes = Axes("tangential_displacement", ("tangential_force",), in_order=True)
+    by_parameters = True
 
     friction_coefficient: float = friction()
     history: History = left_out("Arbitrary load path, given by its points.")

@@ -18,6 +18,8 @@ class TorsionQuery(FieldQuery):
     refused = dict.fromkeys(
         ("tangential", "history", "cycles", "oscillation"), f"a twist needs {NEEDED}"
     )
+    by_parameters = True
+    is_long = True
 
     load: Load = Field(description="Exactly one control: depth, force or contact radius.")
     friction_coefficient: float = friction()

@@ -49,6 +49,7 @@ class WearQuery(_FrettingQuery):
     """Limiting state of a contact that wears under a tangential oscillation."""
 
     axes = Axes("stick_radius", ("worn_volume", "wear_radius"))
+    by_parameters = True
 
     load: ConstantNormalLoads = Field(
         description="Exactly one control, held constant: depth or force."
@@ -65,6 +66,7 @@ class EvolutionQuery(_FrettingQuery):
     """Contact that wears under a tangential oscillation, over the cycles."""
 
     axes = Axes("cycles", ("worn_volume", "contact_radius"))
+    is_long = True
 
     load: ConstantNormalLoad = Field(
         description="Exactly one control, held constant: depth or force."
