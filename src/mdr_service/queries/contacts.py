@@ -16,6 +16,7 @@ from mdr_core import normal as normal_contact
 from mdr_core import tangential as tangential_contact
 from mdr_core.elementwise import every
 from mdr_core.errors import DefectError, InputError, Notice
+from mdr_core.fit import Fit
 from mdr_core.history import LoadHistory
 from mdr_core.impact import Impact
 from mdr_core.materials import UNUSABLE
@@ -143,7 +144,7 @@ def paired(name: str, given: Choice, load: Choice) -> Arguments:
 def contact_result(query: NormalQuery, source: NormalContact | TangentialContact) -> Result:
     """Return the quantities of a contact under its loads, with or without friction."""
     values, infinite = contact_values(query, source)
-    return response(query, source, values, unchecked=holds_while(query, source), infinite=infinite)
+    return response(query, source, values | holds_while(query, source), infinite=infinite)
 
 
 def holds_while(query: NormalQuery | StressQuery, source: Contact) -> Result:
@@ -195,17 +196,19 @@ def by_load(source: Results, loads: int) -> Result:
     return {name: np.full(loads, value) for name, value in source.computed().items()}
 
 
-def checked(
-    query: Query, values: Result, infinite: Mapping[str, bool | Flags] | None = None
-) -> Result:
-    """Return `values` if all are finite, apart from entries that `infinite` allows to be infinite.
+def _require_finite(query: Query, values: Result, infinite: Mapping[str, bool | Flags]) -> None:
+    """Require finite arrays, apart from entries that `infinite` allows to be infinite.
 
     Raises InputError if a value overflows, and DefectError if one is NaN without an overflow.
     """
-    numbers = {name: array for name, array in values.items() if array.dtype.kind == "f"}
-    suspect = {name: array for name, array in numbers.items() if not every(np.isfinite(array))}
+    arrays = {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
+    suspect = {
+        name: array
+        for name, array in arrays.items()
+        if array.dtype.kind == "f" and not every(np.isfinite(array))
+    }
     for name, array in suspect.items():
-        stray = np.isinf(array) & ~np.asarray((infinite or {}).get(name, False))
+        stray = np.isinf(array) & ~np.asarray(infinite.get(name, False))
         if stray.any():
             first = int(np.argwhere(stray)[0][0])
             detail = f"{name} leaves the range of double precision at its entry {first}"
@@ -213,7 +216,6 @@ def checked(
     for name, array in suspect.items():
         if np.isnan(array).any():
             raise DefectError(f"{name} is not a number")
-    return values
 
 
 def response(
@@ -221,7 +223,6 @@ def response(
     source: Any,
     values: Result,
     *,
-    unchecked: Result | None = None,
     infinite: Mapping[str, bool | Flags] | None = None,
     method: str = "",
     error: float | None = None,
@@ -233,8 +234,7 @@ def response(
     ----------
     query : the request.
     source : the solution, a result of the core.
-    values : members of the response, numbers that are checked.
-    unchecked : members that are not lists of numbers.
+    values : members of the response, of which arrays are checked.
     infinite : True for the members, or their entries, that can be infinite.
     method, error : method and error estimate of the values, if they differ from the source.
     warnings : warnings about the values alone.
@@ -258,15 +258,16 @@ def response(
             found.append(inaccurate(error))
     about = {
         "method": method or source.method,
-        "sources": [*dict.fromkeys((*source.sources, *sources_of(*values, *(unchecked or ()))))],
+        "sources": [*dict.fromkeys((*source.sources, *sources_of(*values)))],
         "error_estimate": error,
-        **model_errors(source, query.loads),
+        **_model_errors(source, query.loads),
         "warnings": [vars(notice) for notice in found],
     }
-    return checked(query, values, infinite) | (unchecked or {}) | about
+    _require_finite(query, values, infinite or {})
+    return values | about
 
 
-def model_errors(source: Any, loads: int = 1) -> Result:
+def _model_errors(source: Any, loads: int) -> Result:
     """Return the estimates of the error of the model that there are, over the loads."""
     known = {name: np.ravel(getattr(source, name)) for name in MODEL_ERRORS}
     return {
@@ -279,7 +280,7 @@ def model_errors(source: Any, loads: int = 1) -> Result:
 
 def yields(query: Query, source: Any) -> list[validity.Finding]:
     """Return the finding `yield` of the bodies of a query with a yield strength."""
-    if not query.material.has("yield_strength"):
+    if isinstance(source, Fit) or not query.material.has("yield_strength"):
         return []
     pressed = source.normal if isinstance(source, Impact) else source.solved
     ratios = query.material.effective.poissons_ratios

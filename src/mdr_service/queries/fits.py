@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mdr_core import adhesion, fit, hysteresis, normal, validity
+from mdr_core import adhesion, fit, hysteresis, normal
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
 from mdr_core.hysteresis import LoopFit
@@ -11,12 +11,10 @@ from mdr_service.queries.contacts import (
     ADHESION,
     Result,
     body,
-    checked,
-    model_errors,
     pointing,
     profile,
     require_one_of,
-    yields,
+    response,
 )
 from mdr_service.schemas.contacts import as_body
 from mdr_service.schemas.fits import FitQuery, LoopQuery
@@ -82,17 +80,5 @@ def solve_loop(query: LoopQuery) -> LoopFit:
 
 def fit_result(query: FitQuery | LoopQuery, source: Fit | LoopFit) -> Result:
     """Return the parameters, their standard errors, and the residuals of a curve."""
-    found = {name: getattr(source, name) for name in source.quantities[1:]}
-    values = {name: np.atleast_1d(value) for name, value in found.items() if value is not None}
-    warnings = [notice for notice in source.warnings if notice.code != "singular"]
-    if isinstance(source, LoopFit):
-        warnings += validity.notices(yields(query, source))
-    return {
-        "fit": [*source.fit],
-        **checked(query, values),
-        "method": source.method,
-        "sources": [*source.sources],
-        "error_estimate": source.error_estimate,
-        **model_errors(source),
-        "warnings": [vars(notice) for notice in warnings],
-    }
+    values = {name: value for name, value in source.computed().items() if value is not None}
+    return response(query, source, {name: np.atleast_1d(value) for name, value in values.items()})

@@ -65,9 +65,10 @@ def solve_path(query: HistoryQuery | LoadedQuery, **more: Any) -> LoadHistory:
 
 def history_result(query: HistoryQuery, history: LoadHistory) -> Result:
     """Return forces, displacements and energies at the samples of a load history."""
-    values = {name: np.asarray(value) for name, value in history.computed().items()}
-    state = {"final_state": history.final_state} if query.return_state else {}
-    return response(query, history, values, unchecked=state)
+    values: Result = {name: np.asarray(value) for name, value in history.computed().items()}
+    if query.return_state:
+        values["final_state"] = history.final_state
+    return response(query, history, values)
 
 
 def require_few_samples(query: HistoryQuery | LoadedQuery) -> None:
