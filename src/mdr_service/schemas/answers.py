@@ -247,39 +247,48 @@ class ImpactAnswer(SolvedAnswer):
     )
 
 
-class TangentialAnswer(ContactAnswer):
+class SlipAnswer(ContactAnswer):
+    """Contact with friction: one entry per pair of normal and other load in every list."""
+
+    stick_radius: list[float] = _length("Stick radius c, 0 in full slip")
+    slip_width: list[float] = _length("Slip width a − c")
+    dissipated_energy: list[float] = _energy(
+        "Dissipated energy, by slip on first loading; a cycle between ± the load dissipates four "
+        "times as much"
+    )
+    regime: _Regime
+
+
+class TangentialAnswer(SlipAnswer):
     """One entry per pair of normal and tangential load in every list."""
 
     tangential_force: list[float] = _force("Tangential force F_x")
     tangential_displacement: list[float] = _length("Tangential displacement u_x, of the bodies")
-    stick_radius: list[float] = _length("Stick radius c, 0 in full slip")
-    slip_width: list[float] = _length("Slip width a − c")
     tangential_stiffness: list[float] = _stiffness(
         "Tangential stiffness, dF_x/du_x = 2 G* c on further loading"
     )
-    dissipated_energy: list[float] = _energy("Dissipated energy, by slip in tangential loading")
-    regime: _Regime
 
 
-class TorsionAnswer(ContactAnswer):
+class OverRadius(Answer):
+    """Radii and pressures of a response that has fields only if they are requested."""
+
+    radius: list[float] = _length("Radius r, requested or chosen", default=None)
+    pressure: _Field = _pressure(
+        f"Pressure p(r), by load or number of cycles and radius; {_NULL}", default=None
+    )
+
+
+class TorsionAnswer(SlipAnswer, OverRadius):
     """One entry per pair of normal load and twist in every list; fields only if requested."""
 
     torque: list[float] = _energy("Torque M")
     rotation: list[float] = _number("Rotation φ, of the bodies in radians")
-    stick_radius: list[float] = _length("Stick radius c, 0 in full slip")
-    slip_width: list[float] = _length("Slip width a − c")
     torsional_stiffness: list[float] = _energy(
         "Torsional stiffness, dM/dφ = (16/3) G c³ on further rotation, torque per radian"
-    )
-    dissipated_energy: list[float] = _energy(
-        "Dissipated energy, by slip in the twist; a cycle between ±M dissipates four times as much"
     )
     torsion_arm: list[float] = _length(
         "Torsion arm, the largest torque over µ F_N, which no rotation reaches"
     )
-    regime: _Regime
-    radius: list[float] = _length("Radius r, requested or chosen", default=None)
-    pressure: _Field = _pressure(f"Pressure p(r), by load and radius; {_NULL}", default=None)
     shear_stress: _Field = _pressure(
         "Shear stress τ(r), circumferential, by load and radius, positive in the direction of a "
         f"positive torque; {_NULL}",
@@ -369,7 +378,7 @@ class SubsurfaceAnswer(SolvedAnswer):
     )
 
 
-class WearAnswer(SolvedAnswer):
+class WearAnswer(SolvedAnswer, OverRadius):
     """One entry per pair of load and amplitude in every list; fields only if requested.
 
     In full slip under a constant force wear is unbounded: quantities that grow with it are null,
@@ -384,7 +393,6 @@ class WearAnswer(SolvedAnswer):
     normal_force: list[float] = _force("Normal force F_N in the limiting state")
     worn_volume: list[float | None] = quantity("length^3", f"Worn volume V; {_UNBOUNDED}")
     regime: _Regime
-    radius: list[float] = _length("Radius r, requested or chosen", default=None)
     initial_profile: list[float | None] = _length(
         f"Initial profile f₀(r) by radius, the same for all loads; {_NULL}, outside a flat punch",
         default=None,
@@ -396,12 +404,9 @@ class WearAnswer(SolvedAnswer):
     worn_depth: _Field = _length(
         f"Worn depth, f(r) − f₀(r), by load and radius; {_UNBOUNDED}", default=None
     )
-    pressure: _Field = _pressure(
-        f"Pressure p(r) in the limiting state, by load and radius; {_NULL}, at c", default=None
-    )
 
 
-class EvolutionAnswer(SolvedAnswer):
+class EvolutionAnswer(SolvedAnswer, OverRadius):
     """One entry per number of cycles in every list; fields only if requested.
 
     `error_estimate` is that of the quantities without a radius, by comparison with a coarser run.
@@ -423,7 +428,6 @@ class EvolutionAnswer(SolvedAnswer):
         "absent without fields",
         default=None,
     )
-    radius: list[float] = _length("Radius r, requested or chosen", default=None)
     profile: _Field = _length(
         "Profile f(r), worn, by number of cycles and radius; it tends to `limiting_profile` of "
         "`/v1/wear`, unless that response has the warning `path_dependent`; "
@@ -432,9 +436,6 @@ class EvolutionAnswer(SolvedAnswer):
     )
     worn_depth: list[list[float]] = _length(
         "Worn depth, f(r) − f₀(r), by number of cycles and radius", default=None
-    )
-    pressure: _Field = _pressure(
-        f"Pressure p(r), by number of cycles and radius; {_NULL}", default=None
     )
 
 
