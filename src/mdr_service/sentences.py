@@ -37,6 +37,7 @@ _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     "int_from_float": "must be a whole number",
     "int_type": "must be a whole number",
     "list_type": "must be a list in square brackets",
+    "string_pattern_mismatch": "must be the numbers of two columns, from 1, such as 2,3",
     "string_type": "must be a text in double quotes",
     "union_tag_invalid": f"there is no such kind; there are {_KINDS}",
     "union_tag_not_found": f"is required, one of {_KINDS}",
