@@ -332,7 +332,7 @@ class NormalQuery(Query):
     by_parameters = True
 
     holds_within: float = HOLDS_WITHIN
-    load: Load = Field(description="Exactly one control, such as the depth or the force.")
+    load: Load
 
 
 def friction(**field: Any) -> Any:
@@ -346,6 +346,4 @@ class TangentialQuery(NormalQuery):
     axes = Axes("tangential_displacement", ("tangential_force",), curves="normal_force")
 
     friction_coefficient: float = friction()
-    tangential: Tangential = Field(
-        description="Exactly one control: force, displacement or stick radius."
-    )
+    tangential: Tangential

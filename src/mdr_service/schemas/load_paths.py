@@ -117,10 +117,8 @@ class LoadPath(Strict):
 class History(LoadPath):
     """Points of a load path, which starts at first contact without load."""
 
-    normal: NormalPoints = Field(description="Exactly one control: depth or normal force.")
-    tangential: TangentialPoints = Field(
-        description="Exactly one control: displacement or tangential force."
-    )
+    normal: NormalPoints
+    tangential: TangentialPoints
     samples_per_step: int = _samples_per_step(1)
 
     @property
@@ -134,12 +132,8 @@ class Cycles(LoadPath):
     They start from the mean normal load without a tangential load.
     """
 
-    normal: OscillatingNormalLoad = Field(
-        description="Exactly one control: mean depth or mean normal force; and an amplitude."
-    )
-    tangential: TangentialAmplitude = Field(
-        description="Exactly one control: the amplitude of displacement or tangential force."
-    )
+    normal: OscillatingNormalLoad
+    tangential: TangentialAmplitude
     count: int = quantity("1", "Number of cycles", default=1, ge=1, le=SETTINGS.max_length)
     samples_per_step: int = _samples_per_step(
         None,

@@ -51,12 +51,8 @@ class WearQuery(_FrettingQuery):
     axes = Axes("stick_radius", ("worn_volume", "wear_radius"))
     by_parameters = True
 
-    load: ConstantNormalLoads = Field(
-        description="Exactly one control, held constant: depth or force."
-    )
-    oscillation: Oscillation = Field(
-        description="Exactly one amplitude, held constant: displacement or tangential force."
-    )
+    load: ConstantNormalLoads
+    oscillation: Oscillation
     quantities: Annotated[list[WearField], OnceEach] = quantities(
         _WITH_RADII, default=["initial_profile", "limiting_profile"]
     )
@@ -68,13 +64,8 @@ class EvolutionQuery(_FrettingQuery):
     axes = Axes("cycles", ("worn_volume", "contact_radius"))
     is_long = True
 
-    load: ConstantNormalLoad = Field(
-        description="Exactly one control, held constant: depth or force."
-    )
-    oscillation: TangentialAmplitude = Field(
-        description="Exactly one amplitude, held constant: displacement, or tangential force "
-        "below full slip."
-    )
+    load: ConstantNormalLoad
+    oscillation: TangentialAmplitude
     wear_coefficient: float = positive(
         "1/pressure", "Wear coefficient K: worn volume per dissipated energy"
     )
