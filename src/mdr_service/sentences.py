@@ -126,7 +126,7 @@ def _unknown(error: ErrorDetails, place: Path, model: _Model | None) -> str:
 
 def _missing(error: ErrorDetails, place: Path, model: _Model | None) -> str:
     described = _described(_models(error, place, model))
-    words = [part for part in _annotated(error, place, model) if isinstance(part, str)]
+    words = [part for part in _at(error, place, model) if isinstance(part, str)]
     listed = f", {described}" if described else f"; it can be {', '.join(words)}" if words else ""
     return f"is required{listed}"
 
@@ -169,22 +169,20 @@ _WRITERS: Final[Mapping[str, _Writer]] = {
 
 def _models(error: ErrorDetails, place: Path, model: _Model | None) -> list[_Model]:
     """Return the models of the object at a place; a union has several."""
-    if not place:
-        return [model] if model else []
-    # The location names the kind of the profile next.
-    kinds = [MODELS[str(tag)] for tag in error["loc"] if tag in MODELS][:1]
-    if place[-1] == "profile":
-        return list[_Model](kinds)
-    parts = _annotated(error, place, model)
-    return [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
+    return [part for part in _at(error, place, model) if isinstance(part, type(BaseModel))]
 
 
-def _annotated(error: ErrorDetails, place: Path, model: _Model | None) -> list[Any]:
-    """Return the types of a field, or of the items of a list, and its permitted words."""
-    *inside, field = (step for step in place if isinstance(step, str))
-    owners = _models(error, tuple(inside), model)
-    fields = [owner.model_fields[field] for owner in owners if field in owner.model_fields]
-    return [part for field_ in fields for part in _parts(field_.annotation)]
+def _at(error: ErrorDetails, place: Path, model: _Model | None) -> list[Any]:
+    """Return the types of the value at a place, or of the items of a list, and permitted words."""
+    found: list[Any] = [model]
+    for step in place:
+        if step == "profile":
+            # The location names the kind of the profile next.
+            found = [MODELS[str(tag)] for tag in error["loc"] if tag in MODELS][:1]
+        elif isinstance(step, str):
+            members = [getattr(owner, "model_fields", {}).get(step) for owner in found]
+            found = [part for field in members if field for part in _parts(field.annotation)]
+    return found
 
 
 def _parts(annotation: Any) -> Iterator[Any]:

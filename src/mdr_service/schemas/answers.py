@@ -160,9 +160,7 @@ class FitAnswer(LeastSquaresAnswer):
     """Parameters in lists of one entry, and the curve."""
 
     e_star: list[float] = _pressure("Effective modulus E*")
-    contact_point: list[float] = _length(
-        "Contact point, the depth of first contact, in the depths of the curve"
-    )
+    contact_point: list[float] = _length("Contact point, the depth of first contact in the curve")
     work_of_adhesion: list[float] = quantity("force/length", "Work of adhesion, an energy per area")
     youngs_modulus: list[float] = _pressure("Young's modulus of the sample", default=None)
     youngs_modulus_error: list[float] = _pressure(
@@ -184,12 +182,8 @@ class LoopAnswer(LeastSquaresAnswer):
 
     g_star: list[float] = _pressure("Effective shear modulus G*")
     friction_coefficient: list[float] = _number("Coefficient of friction µ")
-    rig_compliance: list[float] = quantity(
-        "length/force", "Compliance of the rig, as given or fitted"
-    )
-    displacement_offset: list[float] = _length(
-        "Displacement offset, the displacement in the middle of the loop"
-    )
+    rig_compliance: list[float] = quantity("length/force", "Compliance of the rig, given or fitted")
+    displacement_offset: list[float] = _length("Displacement offset, in the middle of the loop")
     dissipated_energy: list[float] = _energy("Energy dissipated in a cycle of the fitted loop")
     dissipated_energy_error: list[float] = _energy("Its standard deviation")
     tangential_displacement: list[float] = _length("Measured displacements")
@@ -208,9 +202,7 @@ class HistoryAnswer(SolvedAnswer):
     dissipated_energy: list[float] = _energy("Dissipated energy, by slip since the start")
     elastic_energy: list[float] = _energy("Elastic energy, of the normal load")
     tangential_energy: list[float] = _energy("Elastic energy of the tangential load")
-    regime: list[Regime] = Field(
-        description="Slip regime: `no_contact`, `stick`, `partial_slip` or `full_slip`."
-    )
+    regime: list[Regime] = Field(description="Slip regime of the sample.")
     slip_fronts: list[float] = _length(
         "Radii of the slip fronts at the end, ascending; `error_estimate` does not cover them"
     )
@@ -228,18 +220,12 @@ class ImpactAnswer(SolvedAnswer):
 
     normal_velocity: list[float] = _velocity("Velocity of approach")
     tangential_velocity: list[float] = _velocity("Tangential velocity before the impact")
-    normal_rebound_velocity: list[float] = _velocity(
-        "Velocity of separation; the motion is elastic"
-    )
-    tangential_rebound_velocity: list[float] = _velocity(
-        "Tangential velocity after the impact, of the contact point"
-    )
+    normal_rebound_velocity: list[float] = _velocity("Velocity of separation, elastic")
+    tangential_rebound_velocity: list[float] = _velocity("Tangential velocity after the impact")
     duration: list[float] = quantity("time", "Duration of contact")
     maximum_indentation_depth: list[float] = _length("Largest indentation depth")
     maximum_normal_force: list[float] = _force("Largest normal force")
-    tangential_impulse: list[float] = quantity(
-        "force*time", "∫ F_x dt, the loss of tangential momentum"
-    )
+    tangential_impulse: list[float] = quantity("force*time", "Tangential momentum lost, ∫ F_x dt")
     dissipated_energy: list[float] = _energy("Dissipated energy, by friction")
     regime: list[Literal["stick", "partial_slip", "full_slip"]] = Field(
         description="`full_slip` if the contact slides throughout, `stick` without tangential "
@@ -265,7 +251,7 @@ class TangentialAnswer(SlipAnswer):
     tangential_force: list[float] = _force("Tangential force F_x")
     tangential_displacement: list[float] = _length("Tangential displacement u_x, of the bodies")
     tangential_stiffness: list[float] = _stiffness(
-        "Tangential stiffness, dF_x/du_x = 2 G* c on further loading"
+        "Tangential stiffness on further loading, 2 G* c"
     )
 
 
@@ -286,9 +272,7 @@ class TorsionAnswer(SlipAnswer, OverRadius):
     torsional_stiffness: list[float] = _energy(
         "Torsional stiffness, dM/dφ = (16/3) G c³ on further rotation, torque per radian"
     )
-    torsion_arm: list[float] = _length(
-        "Torsion arm, the largest torque over µ F_N, which no rotation reaches"
-    )
+    torsion_arm: list[float] = _length("Torsion arm, the limit of the torque over µ F_N")
     shear_stress: _Field = _pressure(
         "Shear stress τ(r), circumferential, by load and radius, positive in the direction of a "
         f"positive torque; {_NULL}",
@@ -387,9 +371,7 @@ class WearAnswer(SolvedAnswer, OverRadius):
 
     stick_radius: list[float] = _length("Stick radius c, inside which there is no wear")
     wear_radius: list[float | None] = _length(f"Outer radius ã of the worn annulus; {_UNBOUNDED}")
-    indentation_depth: list[float | None] = _length(
-        f"Indentation depth d in the limiting state; {_UNBOUNDED}"
-    )
+    indentation_depth: list[float | None] = _length(f"Limiting indentation depth d; {_UNBOUNDED}")
     normal_force: list[float] = _force("Normal force F_N in the limiting state")
     worn_volume: list[float | None] = quantity("length^3", f"Worn volume V; {_UNBOUNDED}")
     regime: _Regime
@@ -532,9 +514,7 @@ class Problem(Answer):
     type: str = Field(description="Stable name of the type of problem, a URI.")
     title: str = Field(description="Title of the type of problem.")
     status: int = Field(description="The HTTP status.")
-    detail: str = Field(
-        description="What is wrong and what to do: the first of `errors`, with its place."
-    )
+    detail: str = Field(description="Fault and remedy: the first of `errors`, with its place.")
     instance: str = Field(
         default="",
         description="URI of the request with its `X-Request-Id`, if the service is at fault.",

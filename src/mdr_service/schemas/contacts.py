@@ -14,6 +14,7 @@ from mdr_service.schemas.quantities import (
     ScalarOrArray,
     SignedScalarOrArray,
     Strict,
+    control,
     left_out,
     poissons_ratio,
     positive,
@@ -72,47 +73,36 @@ class Choice(Strict, json_schema_extra=_describe_choice):
 
 
 class Load(Choice):
-    """Normal load: exactly one control, a number or a list."""
+    """Normal load, with adhesion down to the pull-off: exactly one control, a number or a list."""
 
     # An absent control is None; null is not valid input.
-    indentation_depth: SignedScalarOrArray = quantity(
-        "length", "Indentation depth d, with adhesion down to the pull-off", default=None
-    )
-    normal_force: SignedScalarOrArray = quantity(
-        "force", "Normal force F_N, with adhesion down to the pull-off", default=None
-    )
-    contact_radius: ScalarOrArray = quantity("length", "Contact radius a", default=None)
-    maximum_pressure: ScalarOrArray = quantity(
+    indentation_depth: SignedScalarOrArray = control("length", "Indentation depth d")
+    normal_force: SignedScalarOrArray = control("force", "Normal force F_N")
+    contact_radius: ScalarOrArray = control("length", "Contact radius a")
+    maximum_pressure: ScalarOrArray = control(
         "pressure",
         "Largest pressure p(r), of profiles without a sharp tip or edge, no tables, no adhesion",
-        default=None,
     )
 
 
 class Tangential(Choice):
     """Tangential load: exactly one control, one value for all normal loads or one for each."""
 
-    tangential_force: SignedScalarOrArray = quantity(
-        "force", "Tangential force F_x of either sign, |F_x| ≤ µ F_N", default=None
+    tangential_force: SignedScalarOrArray = control("force", "Tangential force F_x, |F_x| ≤ µ F_N")
+    tangential_displacement: SignedScalarOrArray = control(
+        "length", "Tangential displacement u_x of the bodies"
     )
-    tangential_displacement: SignedScalarOrArray = quantity(
-        "length", "Tangential displacement u_x of the bodies, of either sign", default=None
-    )
-    stick_radius: ScalarOrArray = quantity(
-        "length", "Stick radius c, at most a, and not inside a flat", default=None
-    )
+    stick_radius: ScalarOrArray = control("length", "Stick radius c, at most a, not inside a flat")
 
 
 class Torsion(Choice):
     """Twist about the axis: exactly one control, one value for all normal loads or one for each."""
 
-    torque: SignedScalarOrArray = quantity(
-        "force*length", "Torque M of either sign, |M| below µ F_N times `torsion_arm`", default=None
+    torque: SignedScalarOrArray = control(
+        "force*length", "Torque M, |M| below µ F_N times `torsion_arm`"
     )
-    rotation: SignedScalarOrArray = quantity(
-        "1", "Rotation φ of the bodies in radians, of either sign", default=None
-    )
-    stick_radius: ScalarOrArray = quantity("length", "Stick radius c, at most a", default=None)
+    rotation: SignedScalarOrArray = control("1", "Rotation φ of the bodies in radians")
+    stick_radius: ScalarOrArray = control("length", "Stick radius c, at most a")
 
 
 class BodyMaterial(Strict):

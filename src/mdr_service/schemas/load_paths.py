@@ -14,6 +14,7 @@ from mdr_service.schemas.quantities import (
     SignedScalarOrArray,
     Size,
     Strict,
+    control,
     left_out,
     one_of,
     positive,
@@ -28,10 +29,10 @@ _Vertex = Annotated[list[float], Field(min_length=2, max_length=2)]
 class NormalPoints(Choice):
     """Points of the normal load: exactly one control, a number or a list."""
 
-    indentation_depth: SignedScalarOrArray = quantity(
-        "length", "Indentation depth d; negative values are a separation", default=None
+    indentation_depth: SignedScalarOrArray = control(
+        "length", "Indentation depth d; below 0 a separation"
     )
-    normal_force: ScalarOrArray = quantity("force", "Normal force F_N", default=None)
+    normal_force: ScalarOrArray = control("force", "Normal force F_N")
 
 
 class TangentialPoints(Choice):
@@ -40,13 +41,11 @@ class TangentialPoints(Choice):
     If the lists differ in length, the shorter one contains a single value.
     """
 
-    tangential_displacement: SignedScalarOrArray = quantity(
-        "length", "Tangential displacement u_x of the bodies, of either sign", default=None
+    tangential_displacement: SignedScalarOrArray = control(
+        "length", "Tangential displacement u_x of the bodies"
     )
-    tangential_force: SignedScalarOrArray = quantity(
-        "force",
-        "Tangential force F_x of either sign, |F_x| ≤ µ F_N at the points and between them",
-        default=None,
+    tangential_force: SignedScalarOrArray = control(
+        "force", "Tangential force F_x, |F_x| ≤ µ F_N everywhere on the path"
     )
 
 
@@ -55,8 +54,8 @@ class OscillatingNormalLoad(Choice):
 
     optional = frozenset({"amplitude"})
 
-    indentation_depth: Size = quantity("length", "Mean indentation depth d", default=None)
-    normal_force: Size = quantity("force", "Mean normal force F_N", default=None)
+    indentation_depth: Size = control("length", "Mean indentation depth d")
+    normal_force: Size = control("force", "Mean normal force F_N")
     amplitude: Size = quantity(
         "as the mean",
         "Amplitude of the normal load, at most the mean, in phase with the tangential load",

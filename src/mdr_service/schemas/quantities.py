@@ -48,6 +48,11 @@ def quantity(dimension: str, meaning: str, **field: Any) -> Any:
     )
 
 
+def control(dimension: str, meaning: str) -> Any:
+    """Return the field of a control, which is absent if another one is given."""
+    return quantity(dimension, meaning, default=None)
+
+
 def heading(description: str) -> str:
     """Return the label of a quantity: its description up to a punctuation mark or a bracket."""
     return re.split(r"[,;:]| ?\[", description)[0].replace("(r)", "")
