@@ -204,6 +204,6 @@ def _described(models: Sequence[_Model]) -> str:
     """Return a description of the members of an object; empty for other values."""
     names = _members(models)
     if len(models) == 1 and issubclass(models[0], Choice):
-        controls = [name for name in names if name not in models[0].optional]
+        controls = [name for name in names if name not in models[0].accompanying]
         return f"an object of exactly one of {', '.join(controls)}"
     return f"an object of {', '.join(names)}" if names else ""

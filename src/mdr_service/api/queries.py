@@ -36,9 +36,9 @@ def _post(name: str, path: str, model: Any, text: str, **described: Any) -> Quer
 
     summary, _, description = text.partition("\n\n")
     return QueryRoute(
+        handler(name, model),
         path,
         endpoint,
-        handler(name, model),
         methods=["POST"],
         operation_id=name,
         summary=summary.removesuffix("."),
@@ -51,9 +51,9 @@ def _get(name: str, kind: QueryType, model: Any) -> QueryRoute:
     async def get(parameters: Annotated[model, Query()]) -> None: ...
 
     return QueryRoute(
+        handler(name, model),
         kind.path,
         get,
-        handler(name, model),
         methods=["GET"],
         operation_id=f"get_{name}",
         summary=f"`{name}` by parameters, for spreadsheets and browsers",

@@ -54,19 +54,10 @@ class QueryRoute(APIRoute):
     compute process, so that they do not block the event loop.
     """
 
-    def __init__(
-        self, path: str, endpoint: Callable[..., Any], handler: Handler, **described: Any
-    ) -> None:
-        """Create the route.
-
-        Parameters
-        ----------
-        path, endpoint : path, and function that declares the endpoint.
-        handler : result of `handler`.
-        described : arguments of `APIRoute` that OpenAPI documents.
-        """
+    def __init__(self, handler: Handler, *declared: Any, **described: Any) -> None:
+        """Create the route of a `handler`, with the arguments of `APIRoute`."""
         self.handler = handler
-        super().__init__(path, endpoint, **described)
+        super().__init__(*declared, **described)
 
     def get_route_handler(self) -> Handler:
         """Return the handler of a request."""

@@ -58,8 +58,9 @@ def solve_path(query: HistoryQuery | LoadedQuery, **more: Any) -> LoadHistory:
         if first != "history":
             raise
         if len(rest) == 3:
-            # The core numbers points, not members.
-            rest = [*given.place(str(rest[0]), int(rest[2]))]
+            # The core numbers points, of which the shorter list has but the last.
+            points = getattr(given, str(rest[0])).value
+            rest[2:] = [min(int(rest[2]), len(points) - 1)] if isinstance(points, list) else []
         raise InputError((name, *rest), error.detail) from None
 
 

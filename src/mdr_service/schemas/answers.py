@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from mdr_core.errors import Remedy
 from mdr_service.schemas.load_paths import HistoryState, Regime
-from mdr_service.schemas.quantities import left_out, quantity
+from mdr_service.schemas.quantities import left_out, optional, quantity
 
 _number = partial(quantity, "1")
 _length = partial(quantity, "length")
@@ -166,10 +166,8 @@ class FitAnswer(LeastSquaresAnswer):
     youngs_modulus_error: list[float] = _pressure(
         "Its standard deviation, by that of E*", default=None
     )
-    drift_rate: list[float] = quantity(
-        "length/time", "Subtracted drift rate of the depths", default=None
-    )
-    drift_rate_error: list[float] = quantity("length/time", "Its standard deviation", default=None)
+    drift_rate: list[float] = optional("length/time", "Subtracted drift rate of the depths")
+    drift_rate_error: list[float] = optional("length/time", "Its standard deviation")
     indentation_depth: list[float] = _length(
         "Measured depths after subtraction of a drift; with adhesion, without the points between "
         "the least force and the pull-off"

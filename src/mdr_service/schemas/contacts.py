@@ -14,8 +14,8 @@ from mdr_service.schemas.quantities import (
     ScalarOrArray,
     SignedScalarOrArray,
     Strict,
-    control,
     left_out,
+    optional,
     poissons_ratio,
     positive,
     quantity,
@@ -43,20 +43,22 @@ def _describe_choice(schema: dict[str, Any]) -> None:
 class Choice(Strict, json_schema_extra=_describe_choice):
     """Fields of which exactly one is given, the control."""
 
-    optional: ClassVar[frozenset[str]] = frozenset()
+    accompanying: ClassVar[frozenset[str]] = frozenset()
     """Fields that can accompany any control."""
 
     @model_validator(mode="after")
     def _exactly_one(self) -> Self:
-        if len(self.model_fields_set - self.optional) != 1:
-            names = ", ".join(name for name in type(self).model_fields if name not in self.optional)
+        if len(self.model_fields_set - self.accompanying) != 1:
+            names = ", ".join(
+                name for name in type(self).model_fields if name not in self.accompanying
+            )
             raise PydanticCustomError("one_control", f"exactly one of {names} is needed")
         return self
 
     @cached_property
     def control(self) -> str:
         """Name of the control."""
-        (name,) = self.model_fields_set - self.optional
+        (name,) = self.model_fields_set - self.accompanying
         return name
 
     @property
@@ -76,10 +78,10 @@ class Load(Choice):
     """Normal load, with adhesion down to the pull-off: exactly one control, a number or a list."""
 
     # An absent control is None; null is not valid input.
-    indentation_depth: SignedScalarOrArray = control("length", "Indentation depth d")
-    normal_force: SignedScalarOrArray = control("force", "Normal force F_N")
-    contact_radius: ScalarOrArray = control("length", "Contact radius a")
-    maximum_pressure: ScalarOrArray = control(
+    indentation_depth: SignedScalarOrArray = optional("length", "Indentation depth d")
+    normal_force: SignedScalarOrArray = optional("force", "Normal force F_N")
+    contact_radius: ScalarOrArray = optional("length", "Contact radius a")
+    maximum_pressure: ScalarOrArray = optional(
         "pressure",
         "Largest pressure p(r), of profiles without a sharp tip or edge, no tables, no adhesion",
     )
@@ -88,21 +90,21 @@ class Load(Choice):
 class Tangential(Choice):
     """Tangential load: exactly one control, one value for all normal loads or one for each."""
 
-    tangential_force: SignedScalarOrArray = control("force", "Tangential force F_x, |F_x| ≤ µ F_N")
-    tangential_displacement: SignedScalarOrArray = control(
+    tangential_force: SignedScalarOrArray = optional("force", "Tangential force F_x, |F_x| ≤ µ F_N")
+    tangential_displacement: SignedScalarOrArray = optional(
         "length", "Tangential displacement u_x of the bodies"
     )
-    stick_radius: ScalarOrArray = control("length", "Stick radius c, at most a, not inside a flat")
+    stick_radius: ScalarOrArray = optional("length", "Stick radius c, at most a, not inside a flat")
 
 
 class Torsion(Choice):
     """Twist about the axis: exactly one control, one value for all normal loads or one for each."""
 
-    torque: SignedScalarOrArray = control(
+    torque: SignedScalarOrArray = optional(
         "force*length", "Torque M, |M| below µ F_N times `torsion_arm`"
     )
-    rotation: SignedScalarOrArray = control("1", "Rotation φ of the bodies in radians")
-    stick_radius: ScalarOrArray = control("length", "Stick radius c, at most a")
+    rotation: SignedScalarOrArray = optional("1", "Rotation φ of the bodies in radians")
+    stick_radius: ScalarOrArray = optional("length", "Stick radius c, at most a")
 
 
 class BodyMaterial(Strict):

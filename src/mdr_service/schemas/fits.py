@@ -20,6 +20,7 @@ from mdr_service.schemas.quantities import (
     Signed,
     Size,
     left_out,
+    optional,
     poissons_ratio,
     positive,
     quantity,
@@ -53,7 +54,7 @@ class FitQuery(Query):
     )
     noise: float = positive(
         "force",
-        "Standard deviation of the forces, by default estimated from the residuals",
+        "Standard deviation of the forces, by default from the residuals",
         default=None,
     )
     body_thickness: float = BODY_THICKNESS
@@ -61,21 +62,14 @@ class FitQuery(Query):
         "Branch to fit, by the direction of the depth in the order of the lists, without holds; by "
         "default all points."
     )
-    time: list[Signed] = quantity(
-        "time",
-        "Times of the points, non-decreasing; the drift is 0 at time 0",
-        default=None,
-        **_CURVE,
+    time: list[Signed] = optional(
+        "time", "Times of the points, non-decreasing; the drift is 0 at time 0", **_CURVE
     )
     drift: Literal["hold"] = left_out(
         "`hold` to subtract the drift of the depths in the last hold at a constant low force."
     )
-    drift_rate: Signed = quantity(
-        "length/time", "Drift rate of the depths to subtract, instead of `drift`", default=None
-    )
-    drift_rate_error: Size = quantity(
-        "length/time", "Its standard deviation, 0 by default", default=None
-    )
+    drift_rate: Signed = optional("length/time", "Drift rate to subtract, instead of `drift`")
+    drift_rate_error: Size = optional("length/time", "Its standard deviation, 0 by default")
     poissons_ratio: float = poissons_ratio(
         "Poisson's ratio ν of the sample, for its `youngs_modulus`", default=None
     )
@@ -109,9 +103,8 @@ class LoopQuery(Query):
         "fitted, `force_offset` is 0 and `displacement_offset` the middle of the displacements."
     )
     friction_coefficient: float = friction(default=None)
-    rig_compliance: Size = quantity(
+    rig_compliance: Size = optional(
         "length/force",
         "Compliance C of the rig in series with the contact, 0 of displacements measured at the "
         "contact; to fit it needs full slip",
-        default=None,
     )

@@ -14,9 +14,9 @@ from mdr_service.schemas.quantities import (
     SignedScalarOrArray,
     Size,
     Strict,
-    control,
     left_out,
     one_of,
+    optional,
     positive,
     quantity,
 )
@@ -29,10 +29,10 @@ _Vertex = Annotated[list[float], Field(min_length=2, max_length=2)]
 class NormalPoints(Choice):
     """Points of the normal load: exactly one control, a number or a list."""
 
-    indentation_depth: SignedScalarOrArray = control(
+    indentation_depth: SignedScalarOrArray = optional(
         "length", "Indentation depth d; below 0 a separation"
     )
-    normal_force: ScalarOrArray = control("force", "Normal force F_N")
+    normal_force: ScalarOrArray = optional("force", "Normal force F_N")
 
 
 class TangentialPoints(Choice):
@@ -41,10 +41,10 @@ class TangentialPoints(Choice):
     If the lists differ in length, the shorter one contains a single value.
     """
 
-    tangential_displacement: SignedScalarOrArray = control(
+    tangential_displacement: SignedScalarOrArray = optional(
         "length", "Tangential displacement u_x of the bodies"
     )
-    tangential_force: SignedScalarOrArray = control(
+    tangential_force: SignedScalarOrArray = optional(
         "force", "Tangential force F_x, |F_x| ≤ µ F_N everywhere on the path"
     )
 
@@ -52,10 +52,10 @@ class TangentialPoints(Choice):
 class OscillatingNormalLoad(Choice):
     """Oscillating normal load: exactly one control, the mean, and an amplitude."""
 
-    optional = frozenset({"amplitude"})
+    accompanying = frozenset({"amplitude"})
 
-    indentation_depth: Size = control("length", "Mean indentation depth d")
-    normal_force: Size = control("force", "Mean normal force F_N")
+    indentation_depth: Size = optional("length", "Mean indentation depth d")
+    normal_force: Size = optional("force", "Mean normal force F_N")
     amplitude: Size = quantity(
         "as the mean",
         "Amplitude of the normal load, at most the mean, in phase with the tangential load",
@@ -105,12 +105,6 @@ class LoadPath(Strict):
     def samples(self) -> int:
         """Number of samples."""
         return self.steps * self.per_step
-
-    def place(self, axis: str, step: int) -> tuple[str | int, ...]:
-        """Return the path to the value at the end of a load step, the last of a shorter list."""
-        choice: Choice = getattr(self, axis)
-        index = (min(step, choice.count - 1),) if isinstance(choice.value, list) else ()
-        return (axis, choice.control, *index)
 
 
 class History(LoadPath):

@@ -48,9 +48,9 @@ def quantity(dimension: str, meaning: str, **field: Any) -> Any:
     )
 
 
-def control(dimension: str, meaning: str) -> Any:
-    """Return the field of a control, which is absent if another one is given."""
-    return quantity(dimension, meaning, default=None)
+def optional(dimension: str, meaning: str, **field: Any) -> Any:
+    """Return the field of a number that can be left out, such as one of several controls."""
+    return quantity(dimension, meaning, default=None, **field)
 
 
 def heading(description: str) -> str:
@@ -69,7 +69,7 @@ MANY: Final[dict[str, Any]] = {
 
 def places(meaning: str) -> Any:
     """Return the optional field of a list of radii, coordinates or depths."""
-    return quantity("length", meaning, default=None, **MANY)
+    return optional("length", meaning, **MANY)
 
 
 def poissons_ratio(meaning: str, **field: Any) -> Any:

@@ -9,7 +9,7 @@ from mdr_core.wear.evolution import COARSEST, DEFAULT_RESOLUTION, FINEST, TIGHTE
 from mdr_service.schemas.contacts import Axes, Choice, friction
 from mdr_service.schemas.fields import FieldQuery, OnceEach, quantities
 from mdr_service.schemas.load_paths import TangentialAmplitude
-from mdr_service.schemas.quantities import MANY, ScalarOrArray, Size, control, positive, quantity
+from mdr_service.schemas.quantities import MANY, ScalarOrArray, Size, optional, positive, quantity
 
 WearField = Literal["initial_profile", "limiting_profile", "worn_depth", "pressure"]
 EvolutionField = Literal["profile", "worn_depth", "pressure"]
@@ -19,22 +19,22 @@ _WITH_RADII = "with `radius` or `points`"
 class ConstantNormalLoads(Choice):
     """Normal load held constant during wear: exactly one control, a number or a list."""
 
-    indentation_depth: ScalarOrArray = control("length", "Indentation depth d")
-    normal_force: ScalarOrArray = control("force", "Normal force F_N")
+    indentation_depth: ScalarOrArray = optional("length", "Indentation depth d")
+    normal_force: ScalarOrArray = optional("force", "Normal force F_N")
 
 
 class ConstantNormalLoad(Choice):
     """Normal load held constant during wear: exactly one control, a number."""
 
-    indentation_depth: Size = control("length", "Indentation depth d")
-    normal_force: Size = control("force", "Normal force F_N")
+    indentation_depth: Size = optional("length", "Indentation depth d")
+    normal_force: Size = optional("force", "Normal force F_N")
 
 
 class Oscillation(Choice):
     """Tangential oscillation: exactly one amplitude, one for all normal loads or one for each."""
 
-    tangential_displacement: ScalarOrArray = control("length", "Amplitude of the displacement u_x")
-    tangential_force: ScalarOrArray = control("force", "Amplitude of the force F_x, at most µ F_N")
+    tangential_displacement: ScalarOrArray = optional("length", "Amplitude of the displacement u_x")
+    tangential_force: ScalarOrArray = optional("force", "Amplitude of the force F_x, at most µ F_N")
 
 
 class _FrettingQuery(FieldQuery):
