@@ -64,7 +64,7 @@ def solve_tangential(query: TangentialQuery | LoadedQuery) -> TangentialContact:
     Every list of the response has one entry per pair of loads. A tangential force beyond µ F_N has
     no equilibrium and is rejected; a displacement beyond full slip has the regime `full_slip`.
     """
-    tangential = paired("tangential", query.tangential, query.load)
+    tangential = control(query.tangential)
     return tangential_contact.solve(solve_normal(query), **friction(query), **tangential)
 
 
@@ -131,14 +131,6 @@ def pointing(names: Mapping[str, tuple[str, ...]]) -> Iterator[None]:
         if first not in names:
             raise
         raise InputError((*names[str(first)], *rest), error.detail) from None
-
-
-def paired(name: str, given: Choice, load: Choice) -> Arguments:
-    """Return the tangential control: one value for all normal loads, or one for each."""
-    if given.count > 1 and load.count not in {1, given.count}:
-        detail = f"{given.count} values for {load.count} normal loads: give one, or as many"
-        raise InputError((name, given.control), detail)
-    return control(given)
 
 
 def contact_result(query: NormalQuery, source: NormalContact | TangentialContact) -> Result:
