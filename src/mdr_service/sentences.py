@@ -45,7 +45,6 @@ _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     ("model_attributes_type", "profile"): f"must be {_PROFILE}",
     ("literal_error", "bodies"): f"must be {_BODY}",
     ("model_type", "bodies"): f"must be {_BODY}",
-    ("model_attributes_type", "bodies"): f"must be {_BODY}",
     ("literal_error", "kind"): f"must be {_NUMBERS}; {NOT_NUMBERS}",
     ("missing", "e_star"): f"is required, or {_BODIES}",
     ("missing", "kind"): f"is required, one of {_NUMBERS}",
@@ -162,7 +161,7 @@ _WRITERS: Final[Mapping[str, _Writer]] = {
     "missing": _missing,
     "too_long": _length,
     "too_short": _length,
-    **dict.fromkeys(("model_type", "model_attributes_type"), _no_object),
+    "model_type": _no_object,
     **dict.fromkeys(("greater_than", "greater_than_equal", "less_than", "less_than_equal"), _range),
 }
 

@@ -114,8 +114,7 @@ class ContactAnswer(SolvedAnswer):
     elastic_energy: list[float] = _energy("Elastic energy, of the contact")
     holds_while: list[HoldsWhile] = _HOLDS_WHILE
     data_error: list[float] = _number(
-        "Error by the points of a table, an estimate relative to depth and force",
-        default=None,
+        "Error by the points of a table, an estimate relative to depth and force", default=None
     )
     pressure_data_error: list[float | None] = _PRESSURE_DATA_ERROR
 

@@ -53,9 +53,7 @@ class FitQuery(Query):
         min_length=1,
     )
     noise: float = positive(
-        "force",
-        "Standard deviation of the forces, by default from the residuals",
-        default=None,
+        "force", "Standard deviation of the forces, by default from the residuals", default=None
     )
     body_thickness: float = BODY_THICKNESS
     segment: Literal["loading", "unloading"] = left_out(

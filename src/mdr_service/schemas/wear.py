@@ -66,9 +66,7 @@ class EvolutionQuery(_FrettingQuery):
         "1/pressure", "Wear coefficient K: worn volume per dissipated energy"
     )
     cycles: list[Annotated[float, Field(ge=0, le=1e12)]] = quantity(
-        "1",
-        "Numbers of cycles of the response, ascending, up to 1e12",
-        **MANY,
+        "1", "Numbers of cycles of the response, ascending, up to 1e12", **MANY
     )
     resolution: int = quantity(
         "1",
