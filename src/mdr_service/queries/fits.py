@@ -6,7 +6,6 @@ from mdr_core import adhesion, fit, hysteresis, normal
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
 from mdr_core.hysteresis import LoopFit
-from mdr_core.materials import Layer
 from mdr_service.queries.contacts import (
     ADHESION,
     Result,
@@ -41,13 +40,12 @@ def solve_fit(query: FitQuery) -> Fit:
         detail = "is not an input of a fit: add work_of_adhesion to fit to determine it"
         raise InputError(("material", "work_of_adhesion"), detail)
     known = query.material if query.has("material") else None
-    in_material = known.effective.layer if known else None
     return fit.solve(
         profile(query.profile),
         e_star=known.effective.e_star if known else None,
         body_thickness=query.body_thickness or (known.body_thickness if known else None),
         indenter=as_body(query.indenter),
-        layer=Layer(**vars(query.layer)) if query.has("layer") else in_material,
+        layer=query.on_base or (known.effective.layer if known else None),
         **query.model_dump(exclude={"profile", "material", "body_thickness", "indenter", "layer"}),
     )
 

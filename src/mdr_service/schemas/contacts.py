@@ -134,18 +134,7 @@ def as_body(given: BodyMaterial | str) -> materials.Body | Literal["rigid"]:
     return materials.Body(**given.model_dump(exclude_unset=True))
 
 
-# Optional fields of several models.
-BODY_THICKNESS: Final = positive(
-    "length",
-    "Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the "
-    "warning `thin_body`; half-spaces remain the model of the contact",
-    default=None,
-)
-LAYER: Final = left_out(
-    "Layer on a rigid base, with which `/v1/normal` (adhesive contacts too), the normal fields of "
-    "`/v1/stress` and `/v1/normal/fit` compute, up to a = 10 h; E* is the modulus of half-spaces "
-    "of the same materials"
-)
+# Optional field of several models.
 HOLDS_WITHIN: Final = quantity(
     "1",
     "Relative change of a result, for which `holds_while` lists the values of what the model "
@@ -169,7 +158,28 @@ class ElasticLayer(Strict):
     )
 
 
-class Elastic(Strict):
+class OnBase(Strict):
+    """Thickness of the more compliant body, or the layer that it is."""
+
+    body_thickness: float = positive(
+        "length",
+        "Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the "
+        "warning `thin_body`; half-spaces remain the model of the contact",
+        default=None,
+    )
+    layer: ElasticLayer = left_out(
+        "Layer on a rigid base, with which `/v1/normal` (adhesive contacts too), the normal fields "
+        "of `/v1/stress` and `/v1/normal/fit` compute, up to a = 10 h; E* is the modulus of "
+        "half-spaces of the same materials"
+    )
+
+    @property
+    def on_base(self) -> materials.Layer | None:
+        """Layer of the core, None where there is none."""
+        return materials.Layer(**vars(self.layer)) if self.has("layer") else None
+
+
+class Elastic(OnBase):
     """Material of a contact."""
 
     # The field is optional, but not null; hence a plain float with the default None.
@@ -190,13 +200,6 @@ class Elastic(Strict):
         "`work_of_adhesion`",
         default=None,
     )
-    body_thickness: float = BODY_THICKNESS
-    layer: ElasticLayer = LAYER
-
-    @property
-    def on_base(self) -> materials.Layer | None:
-        """Layer of the core, None where there is none."""
-        return materials.Layer(**vars(self.layer)) if self.has("layer") else None
 
 
 class Bodies(Elastic):

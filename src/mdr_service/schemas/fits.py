@@ -4,16 +4,7 @@ from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.contacts import (
-    BODY_THICKNESS,
-    LAYER,
-    Axes,
-    BodyOrRigid,
-    ElasticLayer,
-    Material,
-    Query,
-    friction,
-)
+from mdr_service.schemas.contacts import Axes, BodyOrRigid, Material, OnBase, Query, friction
 from mdr_service.schemas.fields import OnceEach
 from mdr_service.schemas.quantities import (
     MANY,
@@ -33,7 +24,7 @@ LoopFitted = Literal[
 _CURVE: Final = MANY | {"min_length": 3}
 
 
-class FitQuery(Query):
+class FitQuery(Query, OnBase):
     """Measured curve of a contact of known profile, and the parameters to fit."""
 
     axes = Axes("indentation_depth", ("normal_force", "residual"), is_measured=True)
@@ -55,7 +46,6 @@ class FitQuery(Query):
     noise: float = positive(
         "force", "Standard deviation of the forces, by default from the residuals", default=None
     )
-    body_thickness: float = BODY_THICKNESS
     segment: Literal["loading", "unloading"] = left_out(
         "Branch to fit, by the direction of the depth in the order of the lists, without holds; by "
         "default all points."
@@ -74,7 +64,6 @@ class FitQuery(Query):
     indenter: BodyOrRigid = Field(
         default="rigid", description="The body that indents the sample, for its `youngs_modulus`."
     )
-    layer: ElasticLayer = LAYER
 
 
 class LoopQuery(Query):
