@@ -242,15 +242,11 @@ async def _failure(_request: Request, error: Exception) -> Response:
 
 async def _invalid_parameters(_request: Request, error: RequestValidationError) -> Response:
     """Return the problem document of parameters that the framework validates."""
-    return problem_response(
-        problems.invalid(
-            [
-                # Each location begins with the part of the request.
-                (problems.pointer(each["loc"][1:]), sentences.sentence(each, None))
-                for each in error.errors()
-            ]
-        )
-    )
+    found = error.errors()
+    # Each location begins with the part of the request.
+    places = [problems.pointer(each["loc"][1:]) for each in found]
+    details = [sentences.sentence(each, None) for each in found]
+    return problem_response(problems.invalid([*zip(places, details, strict=True)]))
 
 
 async def _http_exception(request: Request, error: HTTPException) -> Response:

@@ -2,6 +2,7 @@
 // Written from the OpenAPI document by `make openapi`.
 
 export const QUANTITIES = {
+  pressure_data_error: ["Error of pressures by the points of a table", "1"],
   indentation_depth: ["Indentation depth d", "displacement"],
   normal_force: ["Normal force F_N", "force"],
   contact_radius: ["Contact radius a", "length"],
@@ -10,7 +11,6 @@ export const QUANTITIES = {
   normal_stiffness: ["Normal stiffness", "stiffness"],
   elastic_energy: ["Elastic energy", "energy"],
   data_error: ["Error by the points of a table", "1"],
-  pressure_data_error: ["Error of pressures by the points of a table", "1"],
   pull_off_force: ["Pull-off force", "force"],
   pull_off_depth: ["Pull-off depth", "displacement"],
   retraction: ["Retraction Δℓ by adhesion", "displacement"],

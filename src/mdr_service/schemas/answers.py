@@ -27,11 +27,6 @@ _Regime = Annotated[
 _NULL = "null where infinite, with a warning `singular`"
 _ROUND = "under a given force by the model, of round bodies or a given thickness"
 _UNBOUNDED = "null if wear is unbounded"
-_PRESSURE_DATA_ERROR = _number(
-    "Error of pressures by the points of a table, an estimate relative to the largest pressure; "
-    "null where that is infinite",
-    default=None,
-)
 
 
 class Answer(BaseModel):
@@ -66,12 +61,6 @@ class HoldsWhile(Answer):
     instead: str = Field(description="Model beyond the limit, or simplest kind within it.")
 
 
-_HOLDS_WHILE = left_out(
-    "With `holds_within`: values of what the model leaves out, up to or from which leaving it out "
-    "changes a result by no more than that."
-)
-
-
 class SolvedAnswer(Answer):
     """Method, accuracy and warnings of every response."""
 
@@ -99,7 +88,21 @@ class SolvedAnswer(Answer):
     warnings: list[AnswerWarning] = Field(description="Warnings, each with a stable code.")
 
 
-class ContactAnswer(SolvedAnswer):
+class PressedAnswer(SolvedAnswer):
+    """Response about a contact under loads, or about its fields."""
+
+    holds_while: list[HoldsWhile] = left_out(
+        "With `holds_within`: values of what the model leaves out, up to or from which leaving it "
+        "out changes a result by no more than that."
+    )
+    pressure_data_error: list[float | None] = _number(
+        "Error of pressures by the points of a table, an estimate relative to the largest "
+        "pressure; null where that is infinite",
+        default=None,
+    )
+
+
+class ContactAnswer(PressedAnswer):
     """One entry per load in every list."""
 
     indentation_depth: list[float] = _length("Indentation depth d")
@@ -112,11 +115,9 @@ class ContactAnswer(SolvedAnswer):
         "pull-off under a prescribed depth, where it is infinite"
     )
     elastic_energy: list[float] = _energy("Elastic energy, of the contact")
-    holds_while: list[HoldsWhile] = _HOLDS_WHILE
     data_error: list[float] = _number(
         "Error by the points of a table, an estimate relative to depth and force", default=None
     )
-    pressure_data_error: list[float | None] = _PRESSURE_DATA_ERROR
 
 
 class NormalAnswer(ContactAnswer):
@@ -277,10 +278,9 @@ class TorsionAnswer(SlipAnswer, OverRadius):
     )
 
 
-class StressAnswer(SolvedAnswer):
+class StressAnswer(PressedAnswer):
     """Requested fields by load and radius; the others are absent."""
 
-    holds_while: list[HoldsWhile] = _HOLDS_WHILE
     radius: list[float] = _length("Radius r, requested or chosen")
     pressure: _Field = _pressure(f"Pressure p(r), by load and radius; {_NULL}", default=None)
     shear_stress: _Field = _pressure(
@@ -303,7 +303,6 @@ class StressAnswer(SolvedAnswer):
         "Tangential load q_x of the equivalent foundation at x = r, by load and radius",
         default=None,
     )
-    pressure_data_error: list[float | None] = _PRESSURE_DATA_ERROR
 
 
 class LargestStress(Answer):
