@@ -6,10 +6,15 @@ These functions compute and check all values of a response; serializers only for
 from collections.abc import Callable, Mapping
 from typing import Any, Final, NamedTuple
 
-from mdr_service.queries.contacts import Result, contact_result, solve_normal, solve_tangential
+from mdr_service.queries.contacts import (
+    contact_result,
+    plain_result,
+    solve_normal,
+    solve_tangential,
+)
 from mdr_service.queries.fields import solve_stress, stress_result
-from mdr_service.queries.fits import fit_result, solve_fit, solve_loop
-from mdr_service.queries.impacts import impact_result, solve_impact
+from mdr_service.queries.fits import solve_fit, solve_loop
+from mdr_service.queries.impacts import solve_impact
 from mdr_service.queries.load_paths import history_result, solve_history
 from mdr_service.queries.subsurface import solve_subsurface, subsurface_result
 from mdr_service.queries.torsion import solve_torsion, torsion_result
@@ -46,12 +51,13 @@ class QueryType(NamedTuple):
     response: type[SolvedAnswer]
     solve: Callable[[Any], Any]
     """Function whose docstring is the summary and the description of the endpoint in OpenAPI."""
-    result: Callable[[Any, Any], Result]
+    result: Callable[[Any, Any], dict[str, Any]]
+    """Function of the request and its solution; the members in their order, lists as arrays."""
 
 
 QUERIES: Final[Mapping[str, QueryType]] = {
     "normal": QueryType("/v1/normal", NormalQuery, NormalAnswer, solve_normal, contact_result),
-    "fit": QueryType("/v1/normal/fit", FitQuery, FitAnswer, solve_fit, fit_result),
+    "fit": QueryType("/v1/normal/fit", FitQuery, FitAnswer, solve_fit, plain_result),
     "tangential": QueryType(
         "/v1/tangential", TangentialQuery, TangentialAnswer, solve_tangential, contact_result
     ),
@@ -59,10 +65,10 @@ QUERIES: Final[Mapping[str, QueryType]] = {
         "/v1/tangential/history", HistoryQuery, HistoryAnswer, solve_history, history_result
     ),
     "tangential_fit": QueryType(
-        "/v1/tangential/fit", LoopQuery, LoopAnswer, solve_loop, fit_result
+        "/v1/tangential/fit", LoopQuery, LoopAnswer, solve_loop, plain_result
     ),
     "impact": QueryType(
-        "/v1/tangential/impact", ImpactQuery, ImpactAnswer, solve_impact, impact_result
+        "/v1/tangential/impact", ImpactQuery, ImpactAnswer, solve_impact, plain_result
     ),
     "torsion": QueryType("/v1/torsion", TorsionQuery, TorsionAnswer, solve_torsion, torsion_result),
     "stress": QueryType("/v1/stress", StressQuery, StressAnswer, solve_stress, stress_result),

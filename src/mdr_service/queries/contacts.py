@@ -133,6 +133,12 @@ def pointing(names: Mapping[str, tuple[str, ...]]) -> Iterator[None]:
         raise InputError((*names[str(first)], *rest), error.detail) from None
 
 
+def plain_result(query: Query, source: Results) -> Result:
+    """Return the quantities of a solution that there are, single numbers as lists of one entry."""
+    known = {name: value for name, value in source.computed().items() if value is not None}
+    return response(query, source, {name: np.atleast_1d(value) for name, value in known.items()})
+
+
 def contact_result(query: NormalQuery, source: NormalContact | TangentialContact) -> Result:
     """Return the quantities of a contact under its loads, with or without friction."""
     values, infinite = contact_values(query, source)

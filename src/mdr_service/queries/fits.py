@@ -1,20 +1,10 @@
 """Queries about measured curves."""
 
-import numpy as np
-
 from mdr_core import adhesion, fit, hysteresis, normal
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
 from mdr_core.hysteresis import LoopFit
-from mdr_service.queries.contacts import (
-    ADHESION,
-    Result,
-    body,
-    pointing,
-    profile,
-    require_one_of,
-    response,
-)
+from mdr_service.queries.contacts import ADHESION, body, pointing, profile, require_one_of
 from mdr_service.schemas.contacts import as_body
 from mdr_service.schemas.fits import FitQuery, LoopQuery
 
@@ -74,9 +64,3 @@ def solve_loop(query: LoopQuery) -> LoopFit:
             g_star=query.material.effective.g_star if is_known else None,
             **query.model_dump(exclude={"profile", "material", *loads}),
         )
-
-
-def fit_result(query: FitQuery | LoopQuery, source: Fit | LoopFit) -> Result:
-    """Return the parameters, their standard errors, and the residuals of a curve."""
-    values = {name: value for name, value in source.computed().items() if value is not None}
-    return response(query, source, {name: np.atleast_1d(value) for name, value in values.items()})
