@@ -199,21 +199,20 @@ def _require_finite(query: Query, values: Result, infinite: Mapping[str, bool | 
 
     Raises InputError if a value overflows, and DefectError if one is NaN without an overflow.
     """
-    arrays = {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
-    suspect = {
-        name: array
-        for name, array in arrays.items()
-        if array.dtype.kind == "f" and not every(np.isfinite(array))
-    }
-    for name, array in suspect.items():
+    undefined = ""
+    for name, array in values.items():
+        is_numbers = isinstance(array, np.ndarray) and array.dtype.kind == "f"
+        if not is_numbers or every(np.isfinite(array)):
+            continue
         stray = np.isinf(array) & ~np.asarray(infinite.get(name, False))
         if stray.any():
             first = int(np.argwhere(stray)[0][0])
             detail = f"{name} leaves the range of double precision at its entry {first}"
             raise InputError(tuple(query.controls)[:1], detail)
-    for name, array in suspect.items():
         if np.isnan(array).any():
-            raise DefectError(f"{name} is not a number")
+            undefined = name
+    if undefined:
+        raise DefectError(f"{undefined} is not a number")
 
 
 def response(
