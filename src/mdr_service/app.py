@@ -8,6 +8,7 @@ import threading
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 
+import orjson
 from fastapi import FastAPI
 
 from mdr_core import __version__
@@ -25,8 +26,6 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
         threading.Thread(target=_end_after, args=(supervisor.join,), daemon=True).start()
     async with app.state.compute.started(health.self_test):
-        # Writing the document takes a quarter of a second; at the start no request waits for it.
-        explorer.openapi_document(app)
         # Garbage collection would visit the objects of all modules, and block the event loop for 80
         # ms.
         gc.freeze()
@@ -66,7 +65,10 @@ def create_app() -> FastAPI:
     app.state.transfers = middleware.Transfers(SETTINGS.max_transfer_bytes)
     app.state.compute = ComputePool(SETTINGS)
     middleware.install(app)
-    openapi.extend(app)
+    # The framework keeps the document. To write it takes a quarter of a second, for which no
+    # request waits at the start.
+    openapi.extend(app.openapi())
+    app.state.openapi = orjson.dumps(app.openapi())
     app.mount("/docs/swagger", explorer.Pages(packages=[("fastapi_swagger", "resources")]))
     app.mount("/docs/page", explorer.Pages(packages=[("mdr_service", "page")]))
     app.mount("/explorer", explorer.FILES)

@@ -120,11 +120,6 @@ class _Job:
     since: float = field(default_factory=monotonic)
     """Time at which the computation began to wait."""
 
-    @property
-    def age(self) -> float:
-        """Time for which the computation has waited."""
-        return monotonic() - self.since
-
 
 class ComputePool:
     """Compute processes of one server, and the queue before them."""
@@ -220,7 +215,7 @@ class ComputePool:
             process = await self._take_process(job)
         finally:
             if record:
-                record.queued += job.age
+                record.queued += monotonic() - job.since
         self._running[job] = process
         limit = seconds or self._settings.budget_seconds
         try:
@@ -281,7 +276,7 @@ class ComputePool:
 
     def _busy(self, reason: str) -> ServiceError:
         """Return the problem of a rejected computation, to be retried after the longest wait."""
-        after = max([1, *(ceil(job.age) for job in self._waiting)])
+        after = max([1, *(ceil(monotonic() - job.since) for job in self._waiting)])
         return ServiceError(problems.BUSY, f"{reason}; try again in {after} s", retry_after=after)
 
 

@@ -31,13 +31,13 @@ _logger: Final = logging.getLogger(__name__)
 _MAX_NUMBERS_ON_LOOP, _PER_LOAD = 1_100, 10
 
 
-def is_short(name: str, query: Query) -> bool:
+def is_short(query: Query) -> bool:
     """Return True if a query runs on the event loop, where it delays all other requests.
 
     Any other query runs in a compute process, for at most `budget_seconds`.
     """
     is_slow = (
-        QUERIES[name].is_long
+        query.is_long
         or query.profile.kind == "tabulated"
         or query.material.model_fields_set & {"yield_strength", "work_of_adhesion", "layer"}
         or any(each.control == "maximum_pressure" for each in query.controls.values())

@@ -11,6 +11,7 @@ from typing import Final
 import orjson
 from anyio import move_on_after
 from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.middleware.cors import CORSMiddleware
 from starlette.requests import ClientDisconnect
@@ -20,7 +21,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from uvicorn.protocols.http.flow_control import HIGH_WATER_LIMIT
 
 from mdr_core import __version__
-from mdr_service import observability, problems
+from mdr_service import observability, problems, sentences
 from mdr_service.observability import RequestRecord
 from mdr_service.problems import ServiceError
 from mdr_service.protocol import LINGER_SECONDS
@@ -48,6 +49,7 @@ def install(app: FastAPI) -> None:
     """Add the middleware and the exception handlers to `app`."""
     for failure in problems.FAILURES:
         app.exception_handler(failure)(_failure)
+    app.exception_handler(RequestValidationError)(_invalid_parameters)
     app.exception_handler(HTTPException)(_http_exception)
     app.add_middleware(ServiceMiddleware, transfers=app.state.transfers)
     if SETTINGS.cors_origins:
@@ -236,6 +238,15 @@ async def _too_large(request: Request) -> ServiceError:
 # five times as long as the rest of a rejected request.
 async def _failure(_request: Request, error: Exception) -> Response:
     return problem_response(problems.to_problem(error))
+
+
+async def _invalid_parameters(_request: Request, error: RequestValidationError) -> Response:
+    """Return the problem document of parameters that the framework validates."""
+    found = error.errors()
+    # Each location begins with the part of the request.
+    places = [problems.pointer(each["loc"][1:]) for each in found]
+    details = [sentences.sentence(each, None) for each in found]
+    return problem_response(problems.invalid([*zip(places, details, strict=True)]))
 
 
 async def _http_exception(request: Request, error: HTTPException) -> Response:

@@ -33,10 +33,7 @@ PROCESSES: Final = Gauge(
     "mdr_compute_processes", "Compute processes that are idle or at work.", registry=REGISTRY
 )
 RESTARTS: Final = Counter(
-    "mdr_compute_restarts",
-    "Compute processes replaced, by reason.",
-    ("reason",),
-    registry=REGISTRY,
+    "mdr_compute_restarts", "Compute processes replaced, by reason.", ("reason",), registry=REGISTRY
 )
 LOST_LINES: Final = Counter(
     "mdr_log_lines_lost", "Log lines lost because standard error was not read.", registry=REGISTRY
@@ -108,11 +105,7 @@ LOGGING: Final[Mapping[str, Any]] = {
     "disable_existing_loggers": False,
     "formatters": {"lines": {"()": "mdr_service.observability.JsonLines"}},
     "handlers": {
-        "stderr": {
-            "class": "logging.StreamHandler",
-            "formatter": "lines",
-            "stream": LogStream(),
-        }
+        "stderr": {"class": "logging.StreamHandler", "formatter": "lines", "stream": LogStream()}
     },
     "root": {"handlers": ["stderr"], "level": "WARNING"},
     "loggers": {name: {"level": "INFO"} for name in ("mdr_service", "uvicorn")},

@@ -3,8 +3,6 @@
 from collections.abc import Iterable
 from typing import Any, Final
 
-from fastapi import FastAPI
-
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.answers import Problem
 from mdr_service.schemas.examples import ANSWERS, EXAMPLES
@@ -65,39 +63,29 @@ def _refer(schema: dict[str, Any], member: str, models: Iterable[type]) -> None:
     entry["anyOf"] = [{"$ref": f"#/components/schemas/{model.__name__}"} for model in models]
 
 
-def extend(app: FastAPI) -> None:
-    """Extend the OpenAPI document of `app` by problem documents and examples.
+def extend(document: dict[str, Any]) -> None:
+    """Extend the OpenAPI document of the framework by problem documents and examples.
 
     The framework documents additional responses as JSON only, has examples of single parameters
     only, and adds responses that do not occur.
     """
-    generate = app.openapi
-
-    def openapi() -> dict[str, Any]:
-        if app.openapi_schema:
-            return app.openapi_schema
-        document = generate()
-        schemas = document["components"]["schemas"]
-        # The service validates each request of a batch separately, so that the model of a batch
-        # accepts any object.
-        _refer(schemas["BatchItem"], "request", [kind.request for kind in QUERIES.values()])
-        _refer(schemas["BatchItemAnswer"], "answer", [kind.response for kind in QUERIES.values()])
-        for name in schemas.keys() - {"Settings", Problem.__name__}:
-            _describe_defaults(schemas[name])
-            for needed in schemas[name].get("dependentRequired", {}).values():
-                # The framework stores required members as a set, whose order changes at every
-                # start.
-                needed.sort()
-        document["security"] = []
-        for path in document["paths"].values():
-            for operation in path.values():
-                name = operation["operationId"].removeprefix("get_")
-                if answer := ANSWERS.get(operation["operationId"]):
-                    operation["responses"]["200"]["content"]["application/json"]["example"] = answer
-                given = EXAMPLES["parameters"].get(name, {})
-                for parameter in operation.get("parameters", ()):
-                    if parameter["name"] in given:
-                        parameter["example"] = given[parameter["name"]]
-        return document
-
-    app.openapi = openapi  # type: ignore[method-assign]  # as the framework documents it
+    schemas = document["components"]["schemas"]
+    # The service validates each request of a batch separately, so that the model of a batch accepts
+    # any object.
+    _refer(schemas["BatchItem"], "request", [kind.request for kind in QUERIES.values()])
+    _refer(schemas["BatchItemAnswer"], "answer", [kind.response for kind in QUERIES.values()])
+    for name in schemas.keys() - {"Settings", Problem.__name__}:
+        _describe_defaults(schemas[name])
+        for needed in schemas[name].get("dependentRequired", {}).values():
+            # The framework stores required members as a set, whose order changes at every start.
+            needed.sort()
+    document["security"] = []
+    for path in document["paths"].values():
+        for operation in path.values():
+            name = operation["operationId"].removeprefix("get_")
+            if answer := ANSWERS.get(operation["operationId"]):
+                operation["responses"]["200"]["content"]["application/json"]["example"] = answer
+            given = EXAMPLES["parameters"].get(name, {})
+            for parameter in operation.get("parameters", ()):
+                if parameter["name"] in given:
+                    parameter["example"] = given[parameter["name"]]

@@ -10,15 +10,13 @@ import re
 import resource
 import socket
 import sys
-from asyncio import AbstractEventLoop, Transport
+from asyncio import Transport
 from math import ceil
 from typing import Any, Final, cast
 
 import h11
 import orjson
-from uvicorn.config import Config
 from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
-from uvicorn.server import ServerState
 
 from mdr_service import observability, problems
 from mdr_service.problems import ProblemType, ServiceError
@@ -47,14 +45,8 @@ class BoundedProtocol(H11Protocol):
     # None before the first request; the declaration of uvicorn omits that case.
     cycle: RequestResponseCycle | None  # type: ignore[assignment]
 
-    def __init__(
-        self,
-        config: Config,
-        server_state: ServerState,
-        app_state: dict[str, Any],
-        _loop: AbstractEventLoop | None = None,
-    ) -> None:
-        super().__init__(config, server_state, app_state, _loop)
+    def __init__(self, *given: Any, **named: Any) -> None:
+        super().__init__(*given, **named)
         self._rejected = False
         self._await_request()
         self._arrival = self.loop.call_at(self.due, self._check_arrival)

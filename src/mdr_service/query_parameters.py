@@ -14,7 +14,6 @@ import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, create_model
 from pydantic_core import PydanticCustomError
 
-from mdr_core import materials
 from mdr_core.errors import InputError
 from mdr_core.validation import FINITE
 from mdr_service import problems
@@ -69,15 +68,11 @@ NUMBERS: Final = (_Number, _Load, _Whole, _Length)
 """Types of the parameters that are numbers; others are words."""
 # Types of parameters by the JSON type of the field.
 _TYPES: Final[Mapping[str, Any]] = {"number": _Number, "integer": _Whole}
-_WORDS: Final[Mapping[str, Any]] = {
-    "profile.kind": Literal[OF_NUMBERS],
-    "fit": str | None,
-    "segment": Literal["loading", "unloading"] | None,
-    "drift": Literal["hold"] | None,
-    **dict.fromkeys(("material.layer.base", "layer.base"), materials.Base | None),
-}
+# Parameters that are words.
+_WORDS: Final = frozenset({"kind", "base", "held", "segment", "drift", "quantities", "fit"})
 # Groups whose parameters carry their name.
 _LAYERS: Final = frozenset({"material.layer", "layer"})
+_OF_BODIES: Final = frozenset({"material.bodies.#", "profile.radii"})
 _LOADS: Final = frozenset(contacts.LOADS)
 _RENAMED: Final = {"cycles.normal.amplitude": "normal_amplitude", "radius": "r"}
 _TEXTS: Final = {
@@ -122,22 +117,17 @@ class Parameters(ResponseParameters):
         given = self.model_dump(exclude_unset=True, exclude=set(Parameters.model_fields))
         self._join_range(given)
         values = {self.fields[name]: value for name, value in given.items()}
-        needed = {name for name, field in self.model.model_fields.items() if field.is_required()}
         bodies = {f"material.bodies.{index}" for index in "01"}
         named = {body for body in bodies if any(field.startswith(body) for field in values)}
         if named:
             values |= dict.fromkeys(bodies - named, "rigid")
-        elif "material" in needed and "material.e_star" not in values:
+        elif self.model.model_fields["material"].is_required() and "material.e_star" not in values:
             raise InputError(("material", "e_star"), f"is required, or {_BODIES}")
         if isinstance(values.get("radius"), float):
             values["radius"] = [values["radius"]]
         for name in {"quantities", "fit"} & values.keys():
             values[name] = values[name].split(",")
-        # What is missing is reported for the parameters of an empty group.
-        groups: dict[str, Any] = {
-            name: {} for name in needed & {"material", "load", "oscillation", "cycles"}
-        }
-        return self.model.model_validate(groups | nested(values) | dict(members or {}))
+        return self.model.model_validate(nested(values) | dict(members or {}))
 
     @contextmanager
     def pointing(self) -> Iterator[None]:
@@ -207,41 +197,43 @@ class Parameters(ResponseParameters):
 
 def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str]]:
     """Yield the name, field of the request, type and description of each parameter."""
-    found = leaves(model.model_json_schema())
     # Cycles are the only load paths that consist of numbers.
     loads = _CYCLES if model is HistoryQuery else _LOADS
+    groups = {"", "profile", "material", *_LAYERS, *_OF_BODIES, *loads}
     # Members of groups come before the members that all queries share.
-    for field, leaf in sorted(found, key=lambda each: "." not in each[0]):
+    for field, leaf in sorted(
+        leaves(model.model_json_schema()), key=lambda each: "." not in each[0]
+    ):
         group, _, name = field.rpartition(".")
-        type_ = _TYPES.get(leaf["type"])
         text: str = _TEXTS.get(field) or leaf.get("description", "")
         dimension = text[text.rfind("[") :]
-        name = f"layer_{name}" if group in _LAYERS else _RENAMED.get(field, name)
-        if group in {"material.bodies.#", "profile.radii"}:
-            yield from _of_both_bodies(field, type_, text)
-        elif field in _WORDS:
-            yield name, field, _WORDS[field], text
-        elif field == "quantities":
+        if name == "quantities":
             text = f"Fields, separated by commas: {', '.join(leaf['items']['enum'])}"
-            yield name, field, str | None, text
-        elif field == "radius" or group in loads & _LOADS:
+        type_ = _word(name, leaf) if name in _WORDS else _TYPES.get(leaf["type"])
+        if field == "radius" or group in loads & _LOADS:
+            name = _RENAMED.get(field, name)
             yield name, field, _Load, text
             for end, which in (("from", "First"), ("to", "Last")):
                 meaning = f"{which} of `n` values of `{name}` {dimension}"
                 yield f"{name}_{end}", field, _Number, meaning
-        elif type_ and group in {"", "profile", "material", *_LAYERS, *loads}:
-            if group == "profile":
+        elif group in _OF_BODIES and type_:
+            name = name.replace("#", "radius")
+            for body in (1, 2):
+                own = field.replace("#", str(body - 1))
+                yield f"{name}_{body}", own, type_, f"Body {body}: {text}"
+        elif group in groups and type_:
+            if group == "profile" and name != "kind":
                 text = f"`{name}` of the profile, see GET /v1/profiles {dimension}"
+            name = f"layer_{name}" if group in _LAYERS else _RENAMED.get(field, name)
             yield name, field, type_, text
 
 
-def _of_both_bodies(field: str, type_: Any, text: str) -> Iterator[tuple[str, str, Any, str]]:
-    """Yield the parameters of both bodies that stand for a field of either."""
-    name = field.rpartition(".")[2].replace("#", "radius")
-    if name == "held":
-        type_ = materials.Held | None
-    for body in (1, 2):
-        yield f"{name}_{body}", field.replace("#", str(body - 1)), type_, f"Body {body}: {text}"
+def _word(name: str, leaf: Mapping[str, Any]) -> Any:
+    """Return the type of a parameter that is a word, or a list of words."""
+    if name == "kind":
+        return Literal[OF_NUMBERS]
+    words = leaf.get("enum") or [leaf["const"]] if leaf["type"] == "string" else ()
+    return Literal[tuple(words)] | None if words else str | None
 
 
 def parameters_of(model: type[contacts.Query]) -> type[Parameters]:
@@ -258,6 +250,8 @@ def parameters_of(model: type[contacts.Query]) -> type[Parameters]:
 
 
 PARAMETERS: Final = {
-    name: parameters_of(kind.request) for name, kind in QUERIES.items() if kind.by_parameters
+    name: parameters_of(kind.request)
+    for name, kind in QUERIES.items()
+    if kind.request.by_parameters
 }
 """Parameters of the queries that consist of numbers, by query."""

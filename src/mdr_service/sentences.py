@@ -37,6 +37,7 @@ _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     "int_from_float": "must be a whole number",
     "int_type": "must be a whole number",
     "list_type": "must be a list in square brackets",
+    "string_pattern_mismatch": "must be the numbers of two columns, from 1, such as 2,3",
     "string_type": "must be a text in double quotes",
     "union_tag_invalid": f"there is no such kind; there are {_KINDS}",
     "union_tag_not_found": f"is required, one of {_KINDS}",
@@ -44,7 +45,6 @@ _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     ("model_attributes_type", "profile"): f"must be {_PROFILE}",
     ("literal_error", "bodies"): f"must be {_BODY}",
     ("model_type", "bodies"): f"must be {_BODY}",
-    ("model_attributes_type", "bodies"): f"must be {_BODY}",
     ("literal_error", "kind"): f"must be {_NUMBERS}; {NOT_NUMBERS}",
     ("missing", "e_star"): f"is required, or {_BODIES}",
     ("missing", "kind"): f"is required, one of {_NUMBERS}",
@@ -125,7 +125,7 @@ def _unknown(error: ErrorDetails, place: Path, model: _Model | None) -> str:
 
 def _missing(error: ErrorDetails, place: Path, model: _Model | None) -> str:
     described = _described(_models(error, place, model))
-    words = [part for part in _annotated(error, place, model) if isinstance(part, str)]
+    words = [part for part in _at(error, place, model) if isinstance(part, str)]
     listed = f", {described}" if described else f"; it can be {', '.join(words)}" if words else ""
     return f"is required{listed}"
 
@@ -161,29 +161,27 @@ _WRITERS: Final[Mapping[str, _Writer]] = {
     "missing": _missing,
     "too_long": _length,
     "too_short": _length,
-    **dict.fromkeys(("model_type", "model_attributes_type"), _no_object),
+    "model_type": _no_object,
     **dict.fromkeys(("greater_than", "greater_than_equal", "less_than", "less_than_equal"), _range),
 }
 
 
 def _models(error: ErrorDetails, place: Path, model: _Model | None) -> list[_Model]:
     """Return the models of the object at a place; a union has several."""
-    if not place:
-        return [model] if model else []
-    # The location names the kind of the profile next.
-    kinds = [MODELS[str(tag)] for tag in error["loc"] if tag in MODELS][:1]
-    if place[-1] == "profile":
-        return list[_Model](kinds)
-    parts = _annotated(error, place, model)
-    return [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
+    return [part for part in _at(error, place, model) if isinstance(part, type(BaseModel))]
 
 
-def _annotated(error: ErrorDetails, place: Path, model: _Model | None) -> list[Any]:
-    """Return the types of a field, or of the items of a list, and its permitted words."""
-    *inside, field = (step for step in place if isinstance(step, str))
-    owners = _models(error, tuple(inside), model)
-    fields = [owner.model_fields[field] for owner in owners if field in owner.model_fields]
-    return [part for field_ in fields for part in _parts(field_.annotation)]
+def _at(error: ErrorDetails, place: Path, model: _Model | None) -> list[Any]:
+    """Return the types of the value at a place, or of the items of a list, and permitted words."""
+    found: list[Any] = [model]
+    for step in place:
+        if step == "profile":
+            # The location names the kind of the profile next.
+            found = [MODELS[str(tag)] for tag in error["loc"] if tag in MODELS][:1]
+        elif isinstance(step, str):
+            members = [getattr(owner, "model_fields", {}).get(step) for owner in found]
+            found = [part for field in members if field for part in _parts(field.annotation)]
+    return found
 
 
 def _parts(annotation: Any) -> Iterator[Any]:
@@ -205,6 +203,6 @@ def _described(models: Sequence[_Model]) -> str:
     """Return a description of the members of an object; empty for other values."""
     names = _members(models)
     if len(models) == 1 and issubclass(models[0], Choice):
-        controls = [name for name in names if name not in models[0].optional]
+        controls = [name for name in names if name not in models[0].accompanying]
         return f"an object of exactly one of {', '.join(controls)}"
     return f"an object of {', '.join(names)}" if names else ""

@@ -64,7 +64,7 @@ def test_short_queries_run_on_the_event_loop(
     value: dict[str, Any],
     short: bool,  # noqa: FBT001 -- of a table of cases
 ) -> None:
-    assert is_short(name, query(name, value)) == short
+    assert is_short(query(name, value)) == short
 
 
 def processor_time(name: str, given: Query) -> float:
@@ -102,7 +102,7 @@ def test_a_short_query_takes_little_more_than_closed_forms(kind: str) -> None:
         ("wear", part | rubbing | {"load": {"normal_force": 0.02}}),
     ):
         given = query(name, value)
-        assert is_short(name, given)
+        assert is_short(given)
         rounds = [(processor_time(name, given), processor_time("normal", hertz)) for _ in range(7)]
         times, closed = (min(each) for each in zip(*rounds, strict=True))
         assert times < MOST_TIMES * closed, name

@@ -74,7 +74,7 @@ def test_stress_of_a_full_slip_balances_the_largest_torque(client: Client) -> No
         ({"torsion": {"torque": [1.0, 1e-5]}}, "/torsion/torque/0", "torsion_arm"),
         ({"torsion": {"stick_radius": 1.0}}, "/torsion/stick_radius", ""),
         ({"torsion": {}}, "/torsion", "exactly one of torque, rotation, stick_radius"),
-        ({"torsion": {"torque": [1.0, 2.0, 3.0]}}, "/torsion/torque", "3 values for 2"),
+        ({"torsion": {"torque": [1.0, 2.0, 3.0]}}, "/torsion/torque", "give one, or as many"),
         ({"quantities": ["pressure"]}, "/radius", "need radius or points"),
         (
             {"material": {"e_star": 1e9, "shear_modulus": 1e9, "work_of_adhesion": 1.0}},

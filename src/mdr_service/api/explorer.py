@@ -1,13 +1,11 @@
 """The explorer, the page at ``/`` with its files, the manual, and the texts to which they link."""
 
 import sys
-from functools import cache
 from importlib.metadata import distribution
 from pathlib import Path
 from typing import Final
 
-import orjson
-from fastapi import APIRouter, FastAPI, Request
+from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, PlainTextResponse, RedirectResponse, Response
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
@@ -84,10 +82,4 @@ async def license_() -> Response:
 @router.get("/openapi.json")
 async def document(request: Request) -> Response:
     """Return the OpenAPI document."""
-    return Response(openapi_document(request.app), media_type="application/json")
-
-
-@cache
-def openapi_document(app: FastAPI) -> bytes:
-    """Return the OpenAPI document; the framework's endpoint would write it for each request."""
-    return orjson.dumps(app.openapi())
+    return Response(request.app.state.openapi, media_type="application/json")

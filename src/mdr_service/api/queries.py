@@ -4,7 +4,6 @@ from inspect import getdoc
 from typing import Annotated, Any, Final
 
 from fastapi import APIRouter, Body, Query
-from fastapi.routing import APIRoute
 
 from mdr_service.api.documentation import GET_FAILURES, POST_FAILURES, RESULT
 from mdr_service.api.query_route import QueryRoute, handler
@@ -28,59 +27,60 @@ A range `..._from`, `..._to` and `n` stands for a list of `n` numbers."""
 # These functions declare endpoints for OpenAPI; `handler` handles the requests.
 
 
-def _post(name: str, path: str, model: Any, **described: Any) -> APIRoute:
+def _post(name: str, path: str, model: Any, text: str, **described: Any) -> QueryRoute:
     content = Body(openapi_examples=EXAMPLES[name])
 
     async def endpoint(
         query: Annotated[model, content], form: Annotated[ResponseParameters, Query()]
     ) -> None: ...
 
-    handle = handler(name, model)
-    return QueryRoute(path, endpoint, handle, methods=["POST"], operation_id=name, **described)
-
-
-def _get(kind: QueryType, model: Any) -> APIRoute:
-    async def get(parameters: Annotated[model, Query()]) -> None: ...
-
+    summary, _, description = text.partition("\n\n")
     return QueryRoute(
-        kind.path,
-        get,
-        handler(kind.name, model),
-        methods=["GET"],
-        operation_id=f"get_{kind.name}",
-        tags=[kind.tag],
-        summary=f"{kind.by_parameters} by parameters, for spreadsheets and browsers",
-        description=_GET,
-        response_model=kind.response,
-        responses=GET_FAILURES | RESULT,
+        handler(name, model),
+        path,
+        endpoint,
+        methods=["POST"],
+        operation_id=name,
+        summary=summary.removesuffix("."),
+        description=description,
+        **described,
     )
 
 
+def _get(name: str, kind: QueryType, model: Any) -> QueryRoute:
+    async def get(parameters: Annotated[model, Query()]) -> None: ...
+
+    return QueryRoute(
+        handler(name, model),
+        kind.path,
+        get,
+        methods=["GET"],
+        operation_id=f"get_{name}",
+        summary=f"`{name}` by parameters, for spreadsheets and browsers",
+        description=_GET,
+        **_documented(kind, GET_FAILURES),
+    )
+
+
+def _documented(kind: QueryType, failures: dict[int | str, dict[str, Any]]) -> dict[str, Any]:
+    tag = "wear" if kind.path.startswith("/v1/wear") else "contact"
+    return {"tags": [tag], "response_model": kind.response, "responses": failures | RESULT}
+
+
+_of_batch: Final = {"tags": ["batch"], "response_model": BatchAnswer, "responses": POST_FAILURES}
 router: Final = APIRouter(
     routes=[
         *(
             _post(
-                kind.name,
+                name,
                 kind.path,
                 kind.request,
-                tags=[kind.tag],
-                summary=kind.summary,
-                description=getdoc(kind.solve),
-                response_model=kind.response,
-                responses=POST_FAILURES | RESULT,
+                getdoc(kind.solve) or "",
+                **_documented(kind, POST_FAILURES),
             )
-            for kind in QUERIES.values()
+            for name, kind in QUERIES.items()
         ),
-        _post(
-            "batch",
-            "/v1/batch",
-            BatchQuery,
-            tags=["batch"],
-            summary="Queries of any kind, each with its own answer or problem",
-            description=_BATCH,
-            response_model=BatchAnswer,
-            responses=POST_FAILURES,
-        ),
-        *(_get(QUERIES[name], model) for name, model in PARAMETERS.items()),
+        _post("batch", "/v1/batch", BatchQuery, _BATCH, **_of_batch),
+        *(_get(name, QUERIES[name], model) for name, model in PARAMETERS.items()),
     ]
 )

@@ -36,7 +36,7 @@ async def _answer(
 ) -> Response:
     """Return the response; a long or unparsed query is answered by a compute process."""
     arguments = name, query, *form, members
-    if isinstance(query, contacts.Query) and form[0] not in PICTURES and is_short(name, query):
+    if isinstance(query, contacts.Query) and form[0] not in PICTURES and is_short(query):
         content = respond(*arguments)
     else:
         content = await request.app.state.compute.run_in_process(respond, *arguments)
@@ -54,19 +54,10 @@ class QueryRoute(APIRoute):
     compute process, so that they do not block the event loop.
     """
 
-    def __init__(
-        self, path: str, endpoint: Callable[..., Any], handler: Handler, **described: Any
-    ) -> None:
-        """Create the route.
-
-        Parameters
-        ----------
-        path, endpoint : path, and function that declares the endpoint.
-        handler : result of `handler`.
-        described : arguments of `APIRoute` that OpenAPI documents.
-        """
+    def __init__(self, handler: Handler, *declared: Any, **described: Any) -> None:
+        """Create the route of a `handler`, with the arguments of `APIRoute`."""
         self.handler = handler
-        super().__init__(path, endpoint, **described)
+        super().__init__(*declared, **described)
 
     def get_route_handler(self) -> Handler:
         """Return the handler of a request."""

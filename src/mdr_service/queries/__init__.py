@@ -6,16 +6,33 @@ These functions compute and check all values of a response; serializers only for
 from collections.abc import Callable, Mapping
 from typing import Any, Final, NamedTuple
 
-from mdr_service.queries.contacts import Result, contact_result, solve_normal, solve_tangential
+from mdr_service.queries.contacts import (
+    contact_result,
+    plain_result,
+    solve_normal,
+    solve_tangential,
+)
 from mdr_service.queries.fields import solve_stress, stress_result
-from mdr_service.queries.fits import fit_result, solve_fit, solve_loop
-from mdr_service.queries.impacts import impact_result, solve_impact
+from mdr_service.queries.fits import solve_fit, solve_loop
+from mdr_service.queries.impacts import solve_impact
 from mdr_service.queries.load_paths import history_result, solve_history
 from mdr_service.queries.subsurface import solve_subsurface, subsurface_result
 from mdr_service.queries.torsion import solve_torsion, torsion_result
 from mdr_service.queries.wear import evolution_result, solve_evolution, solve_wear, wear_result
-from mdr_service.schemas import answers
-from mdr_service.schemas.answers import SolvedAnswer
+from mdr_service.schemas.answers import (
+    EvolutionAnswer,
+    FitAnswer,
+    HistoryAnswer,
+    ImpactAnswer,
+    LoopAnswer,
+    NormalAnswer,
+    SolvedAnswer,
+    StressAnswer,
+    SubsurfaceAnswer,
+    TangentialAnswer,
+    TorsionAnswer,
+    WearAnswer,
+)
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import StressQuery
 from mdr_service.schemas.fits import FitQuery, LoopQuery
@@ -29,136 +46,38 @@ from mdr_service.schemas.wear import EvolutionQuery, WearQuery
 class QueryType(NamedTuple):
     """A query: its endpoint, its models, and the functions that compute its result."""
 
-    name: str
-    """Name in a batch, on the command line and as operation of OpenAPI."""
     path: str
-    summary: str
     request: type[Query]
     response: type[SolvedAnswer]
     solve: Callable[[Any], Any]
-    """Function whose docstring describes the endpoint in OpenAPI."""
-    result: Callable[[Any, Any], Result]
-    tag: str = "contact"
-    by_parameters: str = ""
-    """Title of the endpoint `GET`; empty where a request does not consist of numbers."""
-    is_long: bool = False
-    """True if every query runs in a compute process."""
+    """Function whose docstring is the summary and the description of the endpoint in OpenAPI."""
+    result: Callable[[Any, Any], dict[str, Any]]
+    """Function of the request and its solution; the members in their order, lists as arrays."""
 
 
-_TYPES: Final = (
-    QueryType(
-        "normal",
-        "/v1/normal",
-        "Normal contact under a depth, a force or a contact radius",
-        NormalQuery,
-        answers.NormalAnswer,
-        solve_normal,
-        contact_result,
-        by_parameters="Normal contact",
+QUERIES: Final[Mapping[str, QueryType]] = {
+    "normal": QueryType("/v1/normal", NormalQuery, NormalAnswer, solve_normal, contact_result),
+    "fit": QueryType("/v1/normal/fit", FitQuery, FitAnswer, solve_fit, plain_result),
+    "tangential": QueryType(
+        "/v1/tangential", TangentialQuery, TangentialAnswer, solve_tangential, contact_result
     ),
-    QueryType(
-        "fit",
-        "/v1/normal/fit",
-        "Modulus, contact point, offset and adhesion from a measured curve of force over depth",
-        FitQuery,
-        answers.FitAnswer,
-        solve_fit,
-        fit_result,
-        is_long=True,
+    "history": QueryType(
+        "/v1/tangential/history", HistoryQuery, HistoryAnswer, solve_history, history_result
     ),
-    QueryType(
-        "tangential",
-        "/v1/tangential",
-        "Partial slip under a tangential force or displacement, or a stick radius",
-        TangentialQuery,
-        answers.TangentialAnswer,
-        solve_tangential,
-        contact_result,
-        by_parameters="Partial slip",
+    "tangential_fit": QueryType(
+        "/v1/tangential/fit", LoopQuery, LoopAnswer, solve_loop, plain_result
     ),
-    QueryType(
-        "history",
-        "/v1/tangential/history",
-        "Load history: an arbitrary load path or identical cycles",
-        HistoryQuery,
-        answers.HistoryAnswer,
-        solve_history,
-        history_result,
-        by_parameters="Cycles of the tangential load",
+    "impact": QueryType(
+        "/v1/tangential/impact", ImpactQuery, ImpactAnswer, solve_impact, plain_result
     ),
-    QueryType(
-        "tangential_fit",
-        "/v1/tangential/fit",
-        "Shear modulus, friction and compliance of the rig from a measured loop",
-        LoopQuery,
-        answers.LoopAnswer,
-        solve_loop,
-        fit_result,
-        is_long=True,
+    "torsion": QueryType("/v1/torsion", TorsionQuery, TorsionAnswer, solve_torsion, torsion_result),
+    "stress": QueryType("/v1/stress", StressQuery, StressAnswer, solve_stress, stress_result),
+    "subsurface": QueryType(
+        "/v1/subsurface", SubsurfaceQuery, SubsurfaceAnswer, solve_subsurface, subsurface_result
     ),
-    QueryType(
-        "impact",
-        "/v1/tangential/impact",
-        "Oblique impact: rebound, duration and loss of energy by friction",
-        ImpactQuery,
-        answers.ImpactAnswer,
-        solve_impact,
-        impact_result,
-        is_long=True,
+    "wear": QueryType("/v1/wear", WearQuery, WearAnswer, solve_wear, wear_result),
+    "evolution": QueryType(
+        "/v1/wear/evolution", EvolutionQuery, EvolutionAnswer, solve_evolution, evolution_result
     ),
-    QueryType(
-        "torsion",
-        "/v1/torsion",
-        "Twist about the axis: torque, rotation and slip",
-        TorsionQuery,
-        answers.TorsionAnswer,
-        solve_torsion,
-        torsion_result,
-        by_parameters="Twist about the axis",
-        is_long=True,
-    ),
-    QueryType(
-        "stress",
-        "/v1/stress",
-        "Surface stresses, slip and displacement over the radius",
-        StressQuery,
-        answers.StressAnswer,
-        solve_stress,
-        stress_result,
-        by_parameters="Fields over the radius",
-    ),
-    QueryType(
-        "subsurface",
-        "/v1/subsurface",
-        "Stresses beneath the surface of either body, their peaks and the onset of yield",
-        SubsurfaceQuery,
-        answers.SubsurfaceAnswer,
-        solve_subsurface,
-        subsurface_result,
-        is_long=True,
-    ),
-    QueryType(
-        "wear",
-        "/v1/wear",
-        "Limiting state of fretting wear under a small oscillation",
-        WearQuery,
-        answers.WearAnswer,
-        solve_wear,
-        wear_result,
-        tag="wear",
-        by_parameters="Limiting state of fretting wear",
-    ),
-    QueryType(
-        "evolution",
-        "/v1/wear/evolution",
-        "Fretting wear over the cycles: profile and pressure up to the limiting state",
-        EvolutionQuery,
-        answers.EvolutionAnswer,
-        solve_evolution,
-        evolution_result,
-        tag="wear",
-        is_long=True,
-    ),
-)
-QUERIES: Final[Mapping[str, QueryType]] = {each.name: each for each in _TYPES}
-"""The queries by their names."""
+}
+"""The queries by their names in a batch, on the command line and as operations of OpenAPI."""

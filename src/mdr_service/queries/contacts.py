@@ -16,6 +16,7 @@ from mdr_core import normal as normal_contact
 from mdr_core import tangential as tangential_contact
 from mdr_core.elementwise import every
 from mdr_core.errors import DefectError, InputError, Notice
+from mdr_core.fit import Fit
 from mdr_core.history import LoadHistory
 from mdr_core.impact import Impact
 from mdr_core.materials import UNUSABLE
@@ -63,7 +64,7 @@ def solve_tangential(query: TangentialQuery | LoadedQuery) -> TangentialContact:
     Every list of the response has one entry per pair of loads. A tangential force beyond µ F_N has
     no equilibrium and is rejected; a displacement beyond full slip has the regime `full_slip`.
     """
-    tangential = paired("tangential", query.tangential, query.load)
+    tangential = control(query.tangential)
     return tangential_contact.solve(solve_normal(query), **friction(query), **tangential)
 
 
@@ -135,18 +136,16 @@ def pointing(names: Mapping[str, tuple[str, ...]]) -> Iterator[None]:
         raise InputError((*names[str(first)], *rest), error.detail) from None
 
 
-def paired(name: str, given: Choice, load: Choice) -> Arguments:
-    """Return the tangential control: one value for all normal loads, or one for each."""
-    if given.count > 1 and load.count not in {1, given.count}:
-        detail = f"{given.count} values for {load.count} normal loads: give one, or as many"
-        raise InputError((name, given.control), detail)
-    return control(given)
+def plain_result(query: Query, source: Results) -> Result:
+    """Return the quantities of a solution that there are, single numbers as lists of one entry."""
+    known = {name: value for name, value in source.computed().items() if value is not None}
+    return response(query, source, {name: np.atleast_1d(value) for name, value in known.items()})
 
 
 def contact_result(query: NormalQuery, source: NormalContact | TangentialContact) -> Result:
     """Return the quantities of a contact under its loads, with or without friction."""
     values, infinite = contact_values(query, source)
-    return response(query, source, values, unchecked=holds_while(query, source), infinite=infinite)
+    return response(query, source, values | holds_while(query, source), infinite=infinite)
 
 
 def holds_while(query: NormalQuery | StressQuery, source: Contact) -> Result:
@@ -198,25 +197,25 @@ def by_load(source: Results, loads: int) -> Result:
     return {name: np.full(loads, value) for name, value in source.computed().items()}
 
 
-def checked(
-    query: Query, values: Result, infinite: Mapping[str, bool | Flags] | None = None
-) -> Result:
-    """Return `values` if all are finite, apart from entries that `infinite` allows to be infinite.
+def _require_finite(query: Query, values: Result, infinite: Mapping[str, bool | Flags]) -> None:
+    """Require finite arrays, apart from entries that `infinite` allows to be infinite.
 
     Raises InputError if a value overflows, and DefectError if one is NaN without an overflow.
     """
-    numbers = {name: array for name, array in values.items() if array.dtype.kind == "f"}
-    suspect = {name: array for name, array in numbers.items() if not every(np.isfinite(array))}
-    for name, array in suspect.items():
-        stray = np.isinf(array) & ~np.asarray((infinite or {}).get(name, False))
+    undefined = ""
+    for name, array in values.items():
+        is_numbers = isinstance(array, np.ndarray) and array.dtype.kind == "f"
+        if not is_numbers or every(np.isfinite(array)):
+            continue
+        stray = np.isinf(array) & ~np.asarray(infinite.get(name, False))
         if stray.any():
             first = int(np.argwhere(stray)[0][0])
             detail = f"{name} leaves the range of double precision at its entry {first}"
             raise InputError(tuple(query.controls)[:1], detail)
-    for name, array in suspect.items():
         if np.isnan(array).any():
-            raise DefectError(f"{name} is not a number")
-    return values
+            undefined = name
+    if undefined:
+        raise DefectError(f"{undefined} is not a number")
 
 
 def response(
@@ -224,7 +223,6 @@ def response(
     source: Any,
     values: Result,
     *,
-    unchecked: Result | None = None,
     infinite: Mapping[str, bool | Flags] | None = None,
     method: str = "",
     error: float | None = None,
@@ -236,8 +234,7 @@ def response(
     ----------
     query : the request.
     source : the solution, a result of the core.
-    values : members of the response, numbers that are checked.
-    unchecked : members that are not lists of numbers.
+    values : members of the response, of which arrays are checked.
     infinite : True for the members, or their entries, that can be infinite.
     method, error : method and error estimate of the values, if they differ from the source.
     warnings : warnings about the values alone.
@@ -260,15 +257,16 @@ def response(
         found += validity.notices([validity.inaccurate(error)])
     about = {
         "method": method or source.method,
-        "sources": [*dict.fromkeys((*source.sources, *sources_of(*values, *(unchecked or ()))))],
+        "sources": [*dict.fromkeys((*source.sources, *sources_of(*values)))],
         "error_estimate": error,
-        **model_errors(source, query.loads),
+        **_model_errors(source, query.loads),
         "warnings": [vars(notice) for notice in found],
     }
-    return checked(query, values, infinite) | (unchecked or {}) | about
+    _require_finite(query, values, infinite or {})
+    return values | about
 
 
-def model_errors(source: Any, loads: int = 1) -> Result:
+def _model_errors(source: Any, loads: int) -> Result:
     """Return the estimates of the error of the model that there are, over the loads."""
     known = {name: np.ravel(getattr(source, name)) for name in MODEL_ERRORS}
     return {
@@ -281,7 +279,7 @@ def model_errors(source: Any, loads: int = 1) -> Result:
 
 def yields(query: Query, source: Any) -> list[validity.Finding]:
     """Return the finding `yield` of the bodies of a query with a yield strength."""
-    if not query.material.has("yield_strength"):
+    if isinstance(source, Fit) or not query.material.has("yield_strength"):
         return []
     pressed = source.normal if isinstance(source, Impact) else source.solved
     ratios = query.material.effective.poissons_ratios

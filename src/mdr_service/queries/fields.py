@@ -87,8 +87,7 @@ def stress_result(query: StressQuery, source: Contact) -> Result:
     return response(
         query,
         source,
-        {"radius": radius} | values,
-        unchecked=holds_while(query, source),
+        {"radius": radius} | values | holds_while(query, source),
         infinite=infinite,
         method=method,
         error=max(fields.own_error(source), integrated) + at_edges,

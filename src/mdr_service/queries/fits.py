@@ -1,23 +1,10 @@
 """Queries about measured curves."""
 
-import numpy as np
-
-from mdr_core import adhesion, fit, hysteresis, normal, validity
+from mdr_core import adhesion, fit, hysteresis, normal
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
 from mdr_core.hysteresis import LoopFit
-from mdr_core.materials import Layer
-from mdr_service.queries.contacts import (
-    ADHESION,
-    Result,
-    body,
-    checked,
-    model_errors,
-    pointing,
-    profile,
-    require_one_of,
-    yields,
-)
+from mdr_service.queries.contacts import ADHESION, body, pointing, profile, require_one_of
 from mdr_service.schemas.contacts import as_body
 from mdr_service.schemas.fits import FitQuery, LoopQuery
 
@@ -43,13 +30,12 @@ def solve_fit(query: FitQuery) -> Fit:
         detail = "is not an input of a fit: add work_of_adhesion to fit to determine it"
         raise InputError(("material", "work_of_adhesion"), detail)
     known = query.material if query.has("material") else None
-    in_material = known.effective.layer if known else None
     return fit.solve(
         profile(query.profile),
         e_star=known.effective.e_star if known else None,
         body_thickness=query.body_thickness or (known.body_thickness if known else None),
         indenter=as_body(query.indenter),
-        layer=Layer(**vars(query.layer)) if query.has("layer") else in_material,
+        layer=query.on_base or (known.effective.layer if known else None),
         **query.model_dump(exclude={"profile", "material", "body_thickness", "indenter", "layer"}),
     )
 
@@ -78,21 +64,3 @@ def solve_loop(query: LoopQuery) -> LoopFit:
             g_star=query.material.effective.g_star if is_known else None,
             **query.model_dump(exclude={"profile", "material", *loads}),
         )
-
-
-def fit_result(query: FitQuery | LoopQuery, source: Fit | LoopFit) -> Result:
-    """Return the parameters, their standard errors, and the residuals of a curve."""
-    found = {name: getattr(source, name) for name in source.quantities[1:]}
-    values = {name: np.atleast_1d(value) for name, value in found.items() if value is not None}
-    warnings = [notice for notice in source.warnings if notice.code != "singular"]
-    if isinstance(source, LoopFit):
-        warnings += validity.notices(yields(query, source))
-    return {
-        "fit": [*source.fit],
-        **checked(query, values),
-        "method": source.method,
-        "sources": [*source.sources],
-        "error_estimate": source.error_estimate,
-        **model_errors(source),
-        "warnings": [vars(notice) for notice in warnings],
-    }

@@ -2,7 +2,7 @@
 
 from mdr_core import impact
 from mdr_core.impact import Impact
-from mdr_service.queries.contacts import Result, body, by_load, friction, response
+from mdr_service.queries.contacts import body, friction
 from mdr_service.schemas.impacts import ImpactQuery
 
 
@@ -17,8 +17,3 @@ def solve_impact(query: ImpactQuery) -> Impact:
     """
     motion = query.model_dump(exclude={"profile", "material", "friction_coefficient"})
     return impact.solve(**body(query), **friction(query), **motion)
-
-
-def impact_result(query: ImpactQuery, source: Impact) -> Result:
-    """Return velocities, durations and energies of impacts."""
-    return response(query, source, by_load(source, query.loads))

@@ -58,16 +58,18 @@ def solve_path(query: HistoryQuery | LoadedQuery, **more: Any) -> LoadHistory:
         if first != "history":
             raise
         if len(rest) == 3:
-            # The core numbers points, not members.
-            rest = [*given.place(str(rest[0]), int(rest[2]))]
+            # The core numbers points, of which the shorter list has but the last.
+            points = getattr(given, str(rest[0])).value
+            rest[2:] = [min(int(rest[2]), len(points) - 1)] if isinstance(points, list) else []
         raise InputError((name, *rest), error.detail) from None
 
 
 def history_result(query: HistoryQuery, history: LoadHistory) -> Result:
     """Return forces, displacements and energies at the samples of a load history."""
-    values = {name: np.asarray(value) for name, value in history.computed().items()}
-    state = {"final_state": history.final_state} if query.return_state else {}
-    return response(query, history, values, unchecked=state)
+    values: Result = {name: np.asarray(value) for name, value in history.computed().items()}
+    if query.return_state:
+        values["final_state"] = history.final_state
+    return response(query, history, values)
 
 
 def require_few_samples(query: HistoryQuery | LoadedQuery) -> None:

@@ -60,29 +60,27 @@ def subsurface_result(query: SubsurfaceQuery, source: Contact) -> Result:
     places = dict.fromkeys(values, infinite)
     own = source.error_estimate if isinstance(source, LoadHistory) else 0.0
     error = _OF_INVARIANTS * (own + subsurface.error_estimate(loaded, *place))
-    searched: Result = {}
     if query.largest:
         peaks = {name: subsurface.largest(loaded, name, **body) for name in subsurface.MEASURES}
-        searched["largest"] = {
+        values["largest"] = {
             name: dict(zip(peak._fields, map(np.ravel, peak), strict=True))
             for name, peak in peaks.items()
         }
         infinite = np.append(infinite, [np.isinf(peak.value) for peak in peaks.values()])
     if query.material.has("yield_strength") and not isinstance(source, LoadHistory):
         strength = query.material.yield_strength
-        searched["yield_onset_force"] = {
+        values["yield_onset_force"] = {
             criterion: np.ravel(subsurface.yield_onset_force(source, strength, measure, **body))
             for criterion, measure in _CRITERIA.items()
         }
-    if searched:
-        searched["search_error_estimate"] = _OF_SEARCH
+    if {"largest", "yield_onset_force"} & values.keys():
+        values["search_error_estimate"] = _OF_SEARCH
     message = "stresses are infinite on the surface, where the pressure is"
     method = "closed_form" if contact.profile.is_flat_punch else "quadrature"
     return response(
         query,
         source,
         {"x": x, "z": z} | values,
-        unchecked=searched,
         infinite=places,
         method=method,
         error=error,

@@ -9,8 +9,8 @@ from mdr_core.validation import TIGHTEST
 from mdr_service.queries.contacts import (
     Result,
     contact_values,
+    control,
     friction,
-    paired,
     response,
     singular,
     solve_normal,
@@ -28,10 +28,9 @@ def solve_torsion(query: TorsionQuery) -> TorsionalContact:
     with a tangential load or adhesion, for which it is not exact.
     """
     require_radii(query)
-    twist = paired("torsion", query.torsion, query.load)
     arguments = friction(query)
     arguments["shear_modulus"] = arguments.pop("g_star")
-    return torsion_contact.solve(solve_normal(query), **arguments, **twist)
+    return torsion_contact.solve(solve_normal(query), **arguments, **control(query.torsion))
 
 
 def torsion_result(query: TorsionQuery, source: TorsionalContact) -> Result:

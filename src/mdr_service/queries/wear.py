@@ -17,7 +17,6 @@ from mdr_service.queries.contacts import (
     by_load,
     control,
     friction,
-    paired,
     pointing,
     response,
     singular,
@@ -50,7 +49,7 @@ def solve_wear(query: WearQuery) -> LimitingWear:
     at a constant depth (`contact_lost`). Without slip there is no wear (`no_wear`).
     """
     require_radii(query)
-    amplitude = paired("oscillation", query.oscillation, query.load)
+    amplitude = control(query.oscillation)
     with pointing(_IN_REQUEST):
         return wear_limit.solve(solve_normal(query), **friction(query), **amplitude)
 

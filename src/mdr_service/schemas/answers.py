@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from mdr_core.errors import Remedy
 from mdr_service.schemas.load_paths import HistoryState, Regime
-from mdr_service.schemas.quantities import left_out, quantity
+from mdr_service.schemas.quantities import left_out, optional, quantity
 
 _number = partial(quantity, "1")
 _length = partial(quantity, "length")
@@ -27,11 +27,6 @@ _Regime = Annotated[
 _NULL = "null where infinite, with a warning `singular`"
 _ROUND = "under a given force by the model, of round bodies or a given thickness"
 _UNBOUNDED = "null if wear is unbounded"
-_PRESSURE_DATA_ERROR = _number(
-    "Error of pressures by the points of a table, an estimate relative to the largest pressure; "
-    "null where that is infinite",
-    default=None,
-)
 
 
 class Answer(BaseModel):
@@ -66,12 +61,6 @@ class HoldsWhile(Answer):
     instead: str = Field(description="Model beyond the limit, or simplest kind within it.")
 
 
-_HOLDS_WHILE = left_out(
-    "With `holds_within`: values of what the model leaves out, up to or from which leaving it out "
-    "changes a result by no more than that."
-)
-
-
 class SolvedAnswer(Answer):
     """Method, accuracy and warnings of every response."""
 
@@ -99,7 +88,21 @@ class SolvedAnswer(Answer):
     warnings: list[AnswerWarning] = Field(description="Warnings, each with a stable code.")
 
 
-class ContactAnswer(SolvedAnswer):
+class PressedAnswer(SolvedAnswer):
+    """Response about a contact under loads, or about its fields."""
+
+    holds_while: list[HoldsWhile] = left_out(
+        "With `holds_within`: values of what the model leaves out, up to or from which leaving it "
+        "out changes a result by no more than that."
+    )
+    pressure_data_error: list[float | None] = _number(
+        "Error of pressures by the points of a table, an estimate relative to the largest "
+        "pressure; null where that is infinite",
+        default=None,
+    )
+
+
+class ContactAnswer(PressedAnswer):
     """One entry per load in every list."""
 
     indentation_depth: list[float] = _length("Indentation depth d")
@@ -112,12 +115,9 @@ class ContactAnswer(SolvedAnswer):
         "pull-off under a prescribed depth, where it is infinite"
     )
     elastic_energy: list[float] = _energy("Elastic energy, of the contact")
-    holds_while: list[HoldsWhile] = _HOLDS_WHILE
     data_error: list[float] = _number(
-        "Error by the points of a table, an estimate relative to depth and force",
-        default=None,
+        "Error by the points of a table, an estimate relative to depth and force", default=None
     )
-    pressure_data_error: list[float | None] = _PRESSURE_DATA_ERROR
 
 
 class NormalAnswer(ContactAnswer):
@@ -160,18 +160,14 @@ class FitAnswer(LeastSquaresAnswer):
     """Parameters in lists of one entry, and the curve."""
 
     e_star: list[float] = _pressure("Effective modulus E*")
-    contact_point: list[float] = _length(
-        "Contact point, the depth of first contact, in the depths of the curve"
-    )
+    contact_point: list[float] = _length("Contact point, the depth of first contact in the curve")
     work_of_adhesion: list[float] = quantity("force/length", "Work of adhesion, an energy per area")
     youngs_modulus: list[float] = _pressure("Young's modulus of the sample", default=None)
     youngs_modulus_error: list[float] = _pressure(
         "Its standard deviation, by that of E*", default=None
     )
-    drift_rate: list[float] = quantity(
-        "length/time", "Subtracted drift rate of the depths", default=None
-    )
-    drift_rate_error: list[float] = quantity("length/time", "Its standard deviation", default=None)
+    drift_rate: list[float] = optional("length/time", "Subtracted drift rate of the depths")
+    drift_rate_error: list[float] = optional("length/time", "Its standard deviation")
     indentation_depth: list[float] = _length(
         "Measured depths after subtraction of a drift; with adhesion, without the points between "
         "the least force and the pull-off"
@@ -184,12 +180,8 @@ class LoopAnswer(LeastSquaresAnswer):
 
     g_star: list[float] = _pressure("Effective shear modulus G*")
     friction_coefficient: list[float] = _number("Coefficient of friction µ")
-    rig_compliance: list[float] = quantity(
-        "length/force", "Compliance of the rig, as given or fitted"
-    )
-    displacement_offset: list[float] = _length(
-        "Displacement offset, the displacement in the middle of the loop"
-    )
+    rig_compliance: list[float] = quantity("length/force", "Compliance of the rig, given or fitted")
+    displacement_offset: list[float] = _length("Displacement offset, in the middle of the loop")
     dissipated_energy: list[float] = _energy("Energy dissipated in a cycle of the fitted loop")
     dissipated_energy_error: list[float] = _energy("Its standard deviation")
     tangential_displacement: list[float] = _length("Measured displacements")
@@ -208,9 +200,7 @@ class HistoryAnswer(SolvedAnswer):
     dissipated_energy: list[float] = _energy("Dissipated energy, by slip since the start")
     elastic_energy: list[float] = _energy("Elastic energy, of the normal load")
     tangential_energy: list[float] = _energy("Elastic energy of the tangential load")
-    regime: list[Regime] = Field(
-        description="Slip regime: `no_contact`, `stick`, `partial_slip` or `full_slip`."
-    )
+    regime: list[Regime] = Field(description="Slip regime of the sample.")
     slip_fronts: list[float] = _length(
         "Radii of the slip fronts at the end, ascending; `error_estimate` does not cover them"
     )
@@ -228,18 +218,12 @@ class ImpactAnswer(SolvedAnswer):
 
     normal_velocity: list[float] = _velocity("Velocity of approach")
     tangential_velocity: list[float] = _velocity("Tangential velocity before the impact")
-    normal_rebound_velocity: list[float] = _velocity(
-        "Velocity of separation; the motion is elastic"
-    )
-    tangential_rebound_velocity: list[float] = _velocity(
-        "Tangential velocity after the impact, of the contact point"
-    )
+    normal_rebound_velocity: list[float] = _velocity("Velocity of separation, elastic")
+    tangential_rebound_velocity: list[float] = _velocity("Tangential velocity after the impact")
     duration: list[float] = quantity("time", "Duration of contact")
     maximum_indentation_depth: list[float] = _length("Largest indentation depth")
     maximum_normal_force: list[float] = _force("Largest normal force")
-    tangential_impulse: list[float] = quantity(
-        "force*time", "∫ F_x dt, the loss of tangential momentum"
-    )
+    tangential_impulse: list[float] = quantity("force*time", "Tangential momentum lost, ∫ F_x dt")
     dissipated_energy: list[float] = _energy("Dissipated energy, by friction")
     regime: list[Literal["stick", "partial_slip", "full_slip"]] = Field(
         description="`full_slip` if the contact slides throughout, `stick` without tangential "
@@ -247,39 +231,46 @@ class ImpactAnswer(SolvedAnswer):
     )
 
 
-class TangentialAnswer(ContactAnswer):
+class SlipAnswer(ContactAnswer):
+    """Contact with friction: one entry per pair of normal and other load in every list."""
+
+    stick_radius: list[float] = _length("Stick radius c, 0 in full slip")
+    slip_width: list[float] = _length("Slip width a − c")
+    dissipated_energy: list[float] = _energy(
+        "Dissipated energy, by slip on first loading; a cycle between ± the load dissipates four "
+        "times as much"
+    )
+    regime: _Regime
+
+
+class TangentialAnswer(SlipAnswer):
     """One entry per pair of normal and tangential load in every list."""
 
     tangential_force: list[float] = _force("Tangential force F_x")
     tangential_displacement: list[float] = _length("Tangential displacement u_x, of the bodies")
-    stick_radius: list[float] = _length("Stick radius c, 0 in full slip")
-    slip_width: list[float] = _length("Slip width a − c")
     tangential_stiffness: list[float] = _stiffness(
-        "Tangential stiffness, dF_x/du_x = 2 G* c on further loading"
+        "Tangential stiffness on further loading, 2 G* c"
     )
-    dissipated_energy: list[float] = _energy("Dissipated energy, by slip in tangential loading")
-    regime: _Regime
 
 
-class TorsionAnswer(ContactAnswer):
+class OverRadius(Answer):
+    """Radii and pressures of a response that has fields only if they are requested."""
+
+    radius: list[float] = _length("Radius r, requested or chosen", default=None)
+    pressure: _Field = _pressure(
+        f"Pressure p(r), by load or number of cycles and radius; {_NULL}", default=None
+    )
+
+
+class TorsionAnswer(SlipAnswer, OverRadius):
     """One entry per pair of normal load and twist in every list; fields only if requested."""
 
     torque: list[float] = _energy("Torque M")
     rotation: list[float] = _number("Rotation φ, of the bodies in radians")
-    stick_radius: list[float] = _length("Stick radius c, 0 in full slip")
-    slip_width: list[float] = _length("Slip width a − c")
     torsional_stiffness: list[float] = _energy(
         "Torsional stiffness, dM/dφ = (16/3) G c³ on further rotation, torque per radian"
     )
-    dissipated_energy: list[float] = _energy(
-        "Dissipated energy, by slip in the twist; a cycle between ±M dissipates four times as much"
-    )
-    torsion_arm: list[float] = _length(
-        "Torsion arm, the largest torque over µ F_N, which no rotation reaches"
-    )
-    regime: _Regime
-    radius: list[float] = _length("Radius r, requested or chosen", default=None)
-    pressure: _Field = _pressure(f"Pressure p(r), by load and radius; {_NULL}", default=None)
+    torsion_arm: list[float] = _length("Torsion arm, the limit of the torque over µ F_N")
     shear_stress: _Field = _pressure(
         "Shear stress τ(r), circumferential, by load and radius, positive in the direction of a "
         f"positive torque; {_NULL}",
@@ -287,10 +278,9 @@ class TorsionAnswer(ContactAnswer):
     )
 
 
-class StressAnswer(SolvedAnswer):
+class StressAnswer(PressedAnswer):
     """Requested fields by load and radius; the others are absent."""
 
-    holds_while: list[HoldsWhile] = _HOLDS_WHILE
     radius: list[float] = _length("Radius r, requested or chosen")
     pressure: _Field = _pressure(f"Pressure p(r), by load and radius; {_NULL}", default=None)
     shear_stress: _Field = _pressure(
@@ -313,7 +303,6 @@ class StressAnswer(SolvedAnswer):
         "Tangential load q_x of the equivalent foundation at x = r, by load and radius",
         default=None,
     )
-    pressure_data_error: list[float | None] = _PRESSURE_DATA_ERROR
 
 
 class LargestStress(Answer):
@@ -369,7 +358,7 @@ class SubsurfaceAnswer(SolvedAnswer):
     )
 
 
-class WearAnswer(SolvedAnswer):
+class WearAnswer(SolvedAnswer, OverRadius):
     """One entry per pair of load and amplitude in every list; fields only if requested.
 
     In full slip under a constant force wear is unbounded: quantities that grow with it are null,
@@ -378,13 +367,10 @@ class WearAnswer(SolvedAnswer):
 
     stick_radius: list[float] = _length("Stick radius c, inside which there is no wear")
     wear_radius: list[float | None] = _length(f"Outer radius ã of the worn annulus; {_UNBOUNDED}")
-    indentation_depth: list[float | None] = _length(
-        f"Indentation depth d in the limiting state; {_UNBOUNDED}"
-    )
+    indentation_depth: list[float | None] = _length(f"Limiting indentation depth d; {_UNBOUNDED}")
     normal_force: list[float] = _force("Normal force F_N in the limiting state")
     worn_volume: list[float | None] = quantity("length^3", f"Worn volume V; {_UNBOUNDED}")
     regime: _Regime
-    radius: list[float] = _length("Radius r, requested or chosen", default=None)
     initial_profile: list[float | None] = _length(
         f"Initial profile f₀(r) by radius, the same for all loads; {_NULL}, outside a flat punch",
         default=None,
@@ -396,12 +382,9 @@ class WearAnswer(SolvedAnswer):
     worn_depth: _Field = _length(
         f"Worn depth, f(r) − f₀(r), by load and radius; {_UNBOUNDED}", default=None
     )
-    pressure: _Field = _pressure(
-        f"Pressure p(r) in the limiting state, by load and radius; {_NULL}, at c", default=None
-    )
 
 
-class EvolutionAnswer(SolvedAnswer):
+class EvolutionAnswer(SolvedAnswer, OverRadius):
     """One entry per number of cycles in every list; fields only if requested.
 
     `error_estimate` is that of the quantities without a radius, by comparison with a coarser run.
@@ -423,7 +406,6 @@ class EvolutionAnswer(SolvedAnswer):
         "absent without fields",
         default=None,
     )
-    radius: list[float] = _length("Radius r, requested or chosen", default=None)
     profile: _Field = _length(
         "Profile f(r), worn, by number of cycles and radius; it tends to `limiting_profile` of "
         "`/v1/wear`, unless that response has the warning `path_dependent`; "
@@ -432,9 +414,6 @@ class EvolutionAnswer(SolvedAnswer):
     )
     worn_depth: list[list[float]] = _length(
         "Worn depth, f(r) − f₀(r), by number of cycles and radius", default=None
-    )
-    pressure: _Field = _pressure(
-        f"Pressure p(r), by number of cycles and radius; {_NULL}", default=None
     )
 
 
@@ -531,9 +510,7 @@ class Problem(Answer):
     type: str = Field(description="Stable name of the type of problem, a URI.")
     title: str = Field(description="Title of the type of problem.")
     status: int = Field(description="The HTTP status.")
-    detail: str = Field(
-        description="What is wrong and what to do: the first of `errors`, with its place."
-    )
+    detail: str = Field(description="Fault and remedy: the first of `errors`, with its place.")
     instance: str = Field(
         default="",
         description="URI of the request with its `X-Request-Id`, if the service is at fault.",

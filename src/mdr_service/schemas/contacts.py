@@ -15,6 +15,7 @@ from mdr_service.schemas.quantities import (
     SignedScalarOrArray,
     Strict,
     left_out,
+    optional,
     poissons_ratio,
     positive,
     quantity,
@@ -42,20 +43,22 @@ def _describe_choice(schema: dict[str, Any]) -> None:
 class Choice(Strict, json_schema_extra=_describe_choice):
     """Fields of which exactly one is given, the control."""
 
-    optional: ClassVar[frozenset[str]] = frozenset()
+    accompanying: ClassVar[frozenset[str]] = frozenset()
     """Fields that can accompany any control."""
 
     @model_validator(mode="after")
     def _exactly_one(self) -> Self:
-        if len(self.model_fields_set - self.optional) != 1:
-            names = ", ".join(name for name in type(self).model_fields if name not in self.optional)
+        if len(self.model_fields_set - self.accompanying) != 1:
+            names = ", ".join(
+                name for name in type(self).model_fields if name not in self.accompanying
+            )
             raise PydanticCustomError("one_control", f"exactly one of {names} is needed")
         return self
 
     @cached_property
     def control(self) -> str:
         """Name of the control."""
-        (name,) = self.model_fields_set - self.optional
+        (name,) = self.model_fields_set - self.accompanying
         return name
 
     @property
@@ -72,47 +75,36 @@ class Choice(Strict, json_schema_extra=_describe_choice):
 
 
 class Load(Choice):
-    """Normal load: exactly one control, a number or a list."""
+    """Normal load, with adhesion down to the pull-off: exactly one control, a number or a list."""
 
     # An absent control is None; null is not valid input.
-    indentation_depth: SignedScalarOrArray = quantity(
-        "length", "Indentation depth d, with adhesion down to the pull-off", default=None
-    )
-    normal_force: SignedScalarOrArray = quantity(
-        "force", "Normal force F_N, with adhesion down to the pull-off", default=None
-    )
-    contact_radius: ScalarOrArray = quantity("length", "Contact radius a", default=None)
-    maximum_pressure: ScalarOrArray = quantity(
+    indentation_depth: SignedScalarOrArray = optional("length", "Indentation depth d")
+    normal_force: SignedScalarOrArray = optional("force", "Normal force F_N")
+    contact_radius: ScalarOrArray = optional("length", "Contact radius a")
+    maximum_pressure: ScalarOrArray = optional(
         "pressure",
         "Largest pressure p(r), of profiles without a sharp tip or edge, no tables, no adhesion",
-        default=None,
     )
 
 
 class Tangential(Choice):
     """Tangential load: exactly one control, one value for all normal loads or one for each."""
 
-    tangential_force: SignedScalarOrArray = quantity(
-        "force", "Tangential force F_x of either sign, |F_x| ≤ µ F_N", default=None
+    tangential_force: SignedScalarOrArray = optional("force", "Tangential force F_x, |F_x| ≤ µ F_N")
+    tangential_displacement: SignedScalarOrArray = optional(
+        "length", "Tangential displacement u_x of the bodies"
     )
-    tangential_displacement: SignedScalarOrArray = quantity(
-        "length", "Tangential displacement u_x of the bodies, of either sign", default=None
-    )
-    stick_radius: ScalarOrArray = quantity(
-        "length", "Stick radius c, at most a, and not inside a flat", default=None
-    )
+    stick_radius: ScalarOrArray = optional("length", "Stick radius c, at most a, not inside a flat")
 
 
 class Torsion(Choice):
     """Twist about the axis: exactly one control, one value for all normal loads or one for each."""
 
-    torque: SignedScalarOrArray = quantity(
-        "force*length", "Torque M of either sign, |M| below µ F_N times `torsion_arm`", default=None
+    torque: SignedScalarOrArray = optional(
+        "force*length", "Torque M, |M| below µ F_N times `torsion_arm`"
     )
-    rotation: SignedScalarOrArray = quantity(
-        "1", "Rotation φ of the bodies in radians, of either sign", default=None
-    )
-    stick_radius: ScalarOrArray = quantity("length", "Stick radius c, at most a", default=None)
+    rotation: SignedScalarOrArray = optional("1", "Rotation φ of the bodies in radians")
+    stick_radius: ScalarOrArray = optional("length", "Stick radius c, at most a")
 
 
 class BodyMaterial(Strict):
@@ -142,18 +134,7 @@ def as_body(given: BodyMaterial | str) -> materials.Body | Literal["rigid"]:
     return materials.Body(**given.model_dump(exclude_unset=True))
 
 
-# Optional fields of several models.
-BODY_THICKNESS: Final = positive(
-    "length",
-    "Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the "
-    "warning `thin_body`; half-spaces remain the model of the contact",
-    default=None,
-)
-LAYER: Final = left_out(
-    "Layer on a rigid base, with which `/v1/normal` (adhesive contacts too), the normal fields of "
-    "`/v1/stress` and `/v1/normal/fit` compute, up to a = 10 h; E* is the modulus of half-spaces "
-    "of the same materials"
-)
+# Optional field of several models.
 HOLDS_WITHIN: Final = quantity(
     "1",
     "Relative change of a result, for which `holds_while` lists the values of what the model "
@@ -177,7 +158,28 @@ class ElasticLayer(Strict):
     )
 
 
-class Elastic(Strict):
+class OnBase(Strict):
+    """Thickness of the more compliant body, or the layer that it is."""
+
+    body_thickness: float = positive(
+        "length",
+        "Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the "
+        "warning `thin_body`; half-spaces remain the model of the contact",
+        default=None,
+    )
+    layer: ElasticLayer = left_out(
+        "Layer on a rigid base, with which `/v1/normal` (adhesive contacts too), the normal fields "
+        "of `/v1/stress` and `/v1/normal/fit` compute, up to a = 10 h; E* is the modulus of "
+        "half-spaces of the same materials"
+    )
+
+    @property
+    def on_base(self) -> materials.Layer | None:
+        """Layer of the core, None where there is none."""
+        return materials.Layer(**vars(self.layer)) if self.has("layer") else None
+
+
+class Elastic(OnBase):
     """Material of a contact."""
 
     # The field is optional, but not null; hence a plain float with the default None.
@@ -198,13 +200,6 @@ class Elastic(Strict):
         "`work_of_adhesion`",
         default=None,
     )
-    body_thickness: float = BODY_THICKNESS
-    layer: ElasticLayer = LAYER
-
-    @property
-    def on_base(self) -> materials.Layer | None:
-        """Layer of the core, None where there is none."""
-        return materials.Layer(**vars(self.layer)) if self.has("layer") else None
 
 
 class Bodies(Elastic):
@@ -296,6 +291,10 @@ class Query(Strict):
     """Axes of a picture, unless the result has radii."""
     refused: ClassVar[dict[str, str]] = {}
     """Members of other queries that this one cannot have, with the reason."""
+    by_parameters: ClassVar[bool] = False
+    """True if a request can consist of numbers, and thus of parameters of a URL."""
+    is_long: ClassVar[bool] = False
+    """True if every query runs in a compute process."""
 
     profile: Profile
     material: Material
@@ -325,8 +324,10 @@ class Query(Strict):
 class NormalQuery(Query):
     """Profile pressed into an elastic half-space without friction."""
 
+    by_parameters = True
+
     holds_within: float = HOLDS_WITHIN
-    load: Load = Field(description="Exactly one control, such as the depth or the force.")
+    load: Load
 
 
 def friction(**field: Any) -> Any:
@@ -340,6 +341,4 @@ class TangentialQuery(NormalQuery):
     axes = Axes("tangential_displacement", ("tangential_force",), curves="normal_force")
 
     friction_coefficient: float = friction()
-    tangential: Tangential = Field(
-        description="Exactly one control: force, displacement or stick radius."
-    )
+    tangential: Tangential

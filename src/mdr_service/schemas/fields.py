@@ -102,6 +102,8 @@ _STRESS: Final[dict[str, Any]] = {
 class StressQuery(LoadedQuery, FieldQuery, json_schema_extra=_STRESS):
     """Fields of a contact over the radius, with or without friction."""
 
+    by_parameters = True
+
     holds_within: float = HOLDS_WITHIN
     quantities: Annotated[list[FieldName], OnceEach] = quantities(
         "shear_stress, slip and foundation_shear need `tangential` or `history`"

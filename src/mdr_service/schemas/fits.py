@@ -4,22 +4,14 @@ from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.contacts import (
-    BODY_THICKNESS,
-    LAYER,
-    Axes,
-    BodyOrRigid,
-    ElasticLayer,
-    Material,
-    Query,
-    friction,
-)
+from mdr_service.schemas.contacts import Axes, BodyOrRigid, Material, OnBase, Query, friction
 from mdr_service.schemas.fields import OnceEach
 from mdr_service.schemas.quantities import (
     MANY,
     Signed,
     Size,
     left_out,
+    optional,
     poissons_ratio,
     positive,
     quantity,
@@ -32,10 +24,11 @@ LoopFitted = Literal[
 _CURVE: Final = MANY | {"min_length": 3}
 
 
-class FitQuery(Query):
+class FitQuery(Query, OnBase):
     """Measured curve of a contact of known profile, and the parameters to fit."""
 
     axes = Axes("indentation_depth", ("normal_force", "residual"), is_measured=True)
+    is_long = True
 
     material: Material = left_out("Elastic constants, if `e_star` is not fitted.")
     indentation_depth: list[Signed] = quantity(
@@ -51,37 +44,26 @@ class FitQuery(Query):
         min_length=1,
     )
     noise: float = positive(
-        "force",
-        "Standard deviation of the forces, by default estimated from the residuals",
-        default=None,
+        "force", "Standard deviation of the forces, by default from the residuals", default=None
     )
-    body_thickness: float = BODY_THICKNESS
     segment: Literal["loading", "unloading"] = left_out(
         "Branch to fit, by the direction of the depth in the order of the lists, without holds; by "
         "default all points."
     )
-    time: list[Signed] = quantity(
-        "time",
-        "Times of the points, non-decreasing; the drift is 0 at time 0",
-        default=None,
-        **_CURVE,
+    time: list[Signed] = optional(
+        "time", "Times of the points, non-decreasing; the drift is 0 at time 0", **_CURVE
     )
     drift: Literal["hold"] = left_out(
         "`hold` to subtract the drift of the depths in the last hold at a constant low force."
     )
-    drift_rate: Signed = quantity(
-        "length/time", "Drift rate of the depths to subtract, instead of `drift`", default=None
-    )
-    drift_rate_error: Size = quantity(
-        "length/time", "Its standard deviation, 0 by default", default=None
-    )
+    drift_rate: Signed = optional("length/time", "Drift rate to subtract, instead of `drift`")
+    drift_rate_error: Size = optional("length/time", "Its standard deviation, 0 by default")
     poissons_ratio: float = poissons_ratio(
         "Poisson's ratio ν of the sample, for its `youngs_modulus`", default=None
     )
     indenter: BodyOrRigid = Field(
         default="rigid", description="The body that indents the sample, for its `youngs_modulus`."
     )
-    layer: ElasticLayer = LAYER
 
 
 class LoopQuery(Query):
@@ -92,6 +74,7 @@ class LoopQuery(Query):
         in_order=True,
         is_measured=True,
     )
+    is_long = True
 
     indentation_depth: float = positive("length", "Indentation depth d", default=None)
     normal_force: float = positive(
@@ -107,9 +90,8 @@ class LoopQuery(Query):
         "fitted, `force_offset` is 0 and `displacement_offset` the middle of the displacements."
     )
     friction_coefficient: float = friction(default=None)
-    rig_compliance: Size = quantity(
+    rig_compliance: Size = optional(
         "length/force",
         "Compliance C of the rig in series with the contact, 0 of displacements measured at the "
         "contact; to fit it needs full slip",
-        default=None,
     )

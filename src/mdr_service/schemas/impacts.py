@@ -15,6 +15,7 @@ class ImpactQuery(Query):
         ("tangential_rebound_velocity", "dissipated_energy"),
         curves="normal_velocity",
     )
+    is_long = True
 
     friction_coefficient: float = friction()
     normal_mass: float = positive(

@@ -16,6 +16,7 @@ from mdr_service.schemas.quantities import (
     Strict,
     left_out,
     one_of,
+    optional,
     positive,
     quantity,
 )
@@ -28,10 +29,10 @@ _Vertex = Annotated[list[float], Field(min_length=2, max_length=2)]
 class NormalPoints(Choice):
     """Points of the normal load: exactly one control, a number or a list."""
 
-    indentation_depth: SignedScalarOrArray = quantity(
-        "length", "Indentation depth d; negative values are a separation", default=None
+    indentation_depth: SignedScalarOrArray = optional(
+        "length", "Indentation depth d; below 0 a separation"
     )
-    normal_force: ScalarOrArray = quantity("force", "Normal force F_N", default=None)
+    normal_force: ScalarOrArray = optional("force", "Normal force F_N")
 
 
 class TangentialPoints(Choice):
@@ -40,23 +41,21 @@ class TangentialPoints(Choice):
     If the lists differ in length, the shorter one contains a single value.
     """
 
-    tangential_displacement: SignedScalarOrArray = quantity(
-        "length", "Tangential displacement u_x of the bodies, of either sign", default=None
+    tangential_displacement: SignedScalarOrArray = optional(
+        "length", "Tangential displacement u_x of the bodies"
     )
-    tangential_force: SignedScalarOrArray = quantity(
-        "force",
-        "Tangential force F_x of either sign, |F_x| ≤ µ F_N at the points and between them",
-        default=None,
+    tangential_force: SignedScalarOrArray = optional(
+        "force", "Tangential force F_x, |F_x| ≤ µ F_N everywhere on the path"
     )
 
 
 class OscillatingNormalLoad(Choice):
     """Oscillating normal load: exactly one control, the mean, and an amplitude."""
 
-    optional = frozenset({"amplitude"})
+    accompanying = frozenset({"amplitude"})
 
-    indentation_depth: Size = quantity("length", "Mean indentation depth d", default=None)
-    normal_force: Size = quantity("force", "Mean normal force F_N", default=None)
+    indentation_depth: Size = optional("length", "Mean indentation depth d")
+    normal_force: Size = optional("force", "Mean normal force F_N")
     amplitude: Size = quantity(
         "as the mean",
         "Amplitude of the normal load, at most the mean, in phase with the tangential load",
@@ -107,20 +106,12 @@ class LoadPath(Strict):
         """Number of samples."""
         return self.steps * self.per_step
 
-    def place(self, axis: str, step: int) -> tuple[str | int, ...]:
-        """Return the path to the value at the end of a load step, the last of a shorter list."""
-        choice: Choice = getattr(self, axis)
-        index = (min(step, choice.count - 1),) if isinstance(choice.value, list) else ()
-        return (axis, choice.control, *index)
-
 
 class History(LoadPath):
     """Points of a load path, which starts at first contact without load."""
 
-    normal: NormalPoints = Field(description="Exactly one control: depth or normal force.")
-    tangential: TangentialPoints = Field(
-        description="Exactly one control: displacement or tangential force."
-    )
+    normal: NormalPoints
+    tangential: TangentialPoints
     samples_per_step: int = _samples_per_step(1)
 
     @property
@@ -134,12 +125,8 @@ class Cycles(LoadPath):
     They start from the mean normal load without a tangential load.
     """
 
-    normal: OscillatingNormalLoad = Field(
-        description="Exactly one control: mean depth or mean normal force; and an amplitude."
-    )
-    tangential: TangentialAmplitude = Field(
-        description="Exactly one control: the amplitude of displacement or tangential force."
-    )
+    normal: OscillatingNormalLoad
+    tangential: TangentialAmplitude
     count: int = quantity("1", "Number of cycles", default=1, ge=1, le=SETTINGS.max_length)
     samples_per_step: int = _samples_per_step(
         None,
@@ -182,6 +169,7 @@ class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles
     """Contact with friction on a load path."""
 
     axes = Axes("tangential_displacement", ("tangential_force",), in_order=True)
+    by_parameters = True
 
     friction_coefficient: float = friction()
     history: History = left_out("Arbitrary load path, given by its points.")

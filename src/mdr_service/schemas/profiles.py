@@ -216,12 +216,5 @@ MODELS: Final[Mapping[str, type[Strict]]] = {
     for model in get_args(get_args(Profile)[0])
 }
 """Models by kind."""
-OF_NUMBERS: Final = tuple(
-    kind
-    for kind, model in MODELS.items()
-    if all(
-        field.annotation is float or name in {"kind", "radii"}
-        for name, field in model.model_fields.items()
-    )
-)
+OF_NUMBERS: Final = tuple(kind for kind in MODELS if kind not in {"series", "tabulated"})
 """Kinds of profile whose fields are all numbers."""

@@ -48,6 +48,11 @@ def quantity(dimension: str, meaning: str, **field: Any) -> Any:
     )
 
 
+def optional(dimension: str, meaning: str, **field: Any) -> Any:
+    """Return the field of a number that can be left out, such as one of several controls."""
+    return quantity(dimension, meaning, default=None, **field)
+
+
 def heading(description: str) -> str:
     """Return the label of a quantity: its description up to a punctuation mark or a bracket."""
     return re.split(r"[,;:]| ?\[", description)[0].replace("(r)", "")
@@ -64,7 +69,7 @@ MANY: Final[dict[str, Any]] = {
 
 def places(meaning: str) -> Any:
     """Return the optional field of a list of radii, coordinates or depths."""
-    return quantity("length", meaning, default=None, **MANY)
+    return optional("length", meaning, **MANY)
 
 
 def poissons_ratio(meaning: str, **field: Any) -> Any:

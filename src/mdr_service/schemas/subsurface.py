@@ -33,6 +33,8 @@ _SCHEMA: Final[dict[str, Any]] = {
 class SubsurfaceQuery(LoadedQuery, json_schema_extra=_SCHEMA):
     """Stresses in one of the bodies, with or without friction."""
 
+    is_long = True
+
     body: Literal[1, 2] = Field(
         default=1,
         description="Body 1, which has the profile and takes the tangential force, or body 2.",

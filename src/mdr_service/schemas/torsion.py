@@ -2,8 +2,6 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field
-
 from mdr_core.torsion.contact import NEEDED
 from mdr_service.schemas.contacts import Axes, Load, Torsion, friction
 from mdr_service.schemas.fields import FieldQuery, OnceEach, quantities
@@ -18,10 +16,12 @@ class TorsionQuery(FieldQuery):
     refused = dict.fromkeys(
         ("tangential", "history", "cycles", "oscillation"), f"a twist needs {NEEDED}"
     )
+    by_parameters = True
+    is_long = True
 
-    load: Load = Field(description="Exactly one control: depth, force or contact radius.")
+    load: Load
     friction_coefficient: float = friction()
-    torsion: Torsion = Field(description="Exactly one control: torque, rotation or stick radius.")
+    torsion: Torsion
     quantities: Annotated[list[TorsionField], OnceEach] = quantities(
         "with `radius` or `points`", default=["shear_stress"]
     )

@@ -9,7 +9,7 @@ from mdr_core.wear.evolution import COARSEST, DEFAULT_RESOLUTION, FINEST, TIGHTE
 from mdr_service.schemas.contacts import Axes, Choice, friction
 from mdr_service.schemas.fields import FieldQuery, OnceEach, quantities
 from mdr_service.schemas.load_paths import TangentialAmplitude
-from mdr_service.schemas.quantities import MANY, ScalarOrArray, Size, positive, quantity
+from mdr_service.schemas.quantities import MANY, ScalarOrArray, Size, optional, positive, quantity
 
 WearField = Literal["initial_profile", "limiting_profile", "worn_depth", "pressure"]
 EvolutionField = Literal["profile", "worn_depth", "pressure"]
@@ -19,26 +19,22 @@ _WITH_RADII = "with `radius` or `points`"
 class ConstantNormalLoads(Choice):
     """Normal load held constant during wear: exactly one control, a number or a list."""
 
-    indentation_depth: ScalarOrArray = quantity("length", "Indentation depth d", default=None)
-    normal_force: ScalarOrArray = quantity("force", "Normal force F_N", default=None)
+    indentation_depth: ScalarOrArray = optional("length", "Indentation depth d")
+    normal_force: ScalarOrArray = optional("force", "Normal force F_N")
 
 
 class ConstantNormalLoad(Choice):
     """Normal load held constant during wear: exactly one control, a number."""
 
-    indentation_depth: Size = quantity("length", "Indentation depth d", default=None)
-    normal_force: Size = quantity("force", "Normal force F_N", default=None)
+    indentation_depth: Size = optional("length", "Indentation depth d")
+    normal_force: Size = optional("force", "Normal force F_N")
 
 
 class Oscillation(Choice):
     """Tangential oscillation: exactly one amplitude, one for all normal loads or one for each."""
 
-    tangential_displacement: ScalarOrArray = quantity(
-        "length", "Amplitude of the tangential displacement u_x", default=None
-    )
-    tangential_force: ScalarOrArray = quantity(
-        "force", "Amplitude of the tangential force F_x, at most µ F_N", default=None
-    )
+    tangential_displacement: ScalarOrArray = optional("length", "Amplitude of the displacement u_x")
+    tangential_force: ScalarOrArray = optional("force", "Amplitude of the force F_x, at most µ F_N")
 
 
 class _FrettingQuery(FieldQuery):
@@ -49,13 +45,10 @@ class WearQuery(_FrettingQuery):
     """Limiting state of a contact that wears under a tangential oscillation."""
 
     axes = Axes("stick_radius", ("worn_volume", "wear_radius"))
+    by_parameters = True
 
-    load: ConstantNormalLoads = Field(
-        description="Exactly one control, held constant: depth or force."
-    )
-    oscillation: Oscillation = Field(
-        description="Exactly one amplitude, held constant: displacement or tangential force."
-    )
+    load: ConstantNormalLoads
+    oscillation: Oscillation
     quantities: Annotated[list[WearField], OnceEach] = quantities(
         _WITH_RADII, default=["initial_profile", "limiting_profile"]
     )
@@ -65,21 +58,15 @@ class EvolutionQuery(_FrettingQuery):
     """Contact that wears under a tangential oscillation, over the cycles."""
 
     axes = Axes("cycles", ("worn_volume", "contact_radius"))
+    is_long = True
 
-    load: ConstantNormalLoad = Field(
-        description="Exactly one control, held constant: depth or force."
-    )
-    oscillation: TangentialAmplitude = Field(
-        description="Exactly one amplitude, held constant: displacement, or tangential force "
-        "below full slip."
-    )
+    load: ConstantNormalLoad
+    oscillation: TangentialAmplitude
     wear_coefficient: float = positive(
         "1/pressure", "Wear coefficient K: worn volume per dissipated energy"
     )
     cycles: list[Annotated[float, Field(ge=0, le=1e12)]] = quantity(
-        "1",
-        "Numbers of cycles of the response, ascending, up to 1e12",
-        **MANY,
+        "1", "Numbers of cycles of the response, ascending, up to 1e12", **MANY
     )
     resolution: int = quantity(
         "1",
