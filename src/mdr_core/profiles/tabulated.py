@@ -7,7 +7,6 @@ from typing import ClassVar, Final, Self
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
-from scipy.interpolate import make_interp_spline
 
 from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch, Kernel, arccosine, arccosine_growth, arcsine
@@ -27,8 +26,6 @@ from mdr_core.validation import as_numbers, require_finite, single
 _ROUNDING: Final = 2e-13
 # Deviation that is within a standard uncertainty.
 _MET: Final = 1.1
-# Nodes and weights of a mean over the angles, in which g(r sin t) is smooth.
-_ANGLES, _SHARES = composite_rule(16, 8)
 # Points of a piece at which the increase of g'(x)/x is sampled.
 _SAMPLES: Final = 16
 # Points of a tip from the coefficients of its area function.
@@ -130,39 +127,6 @@ class Tabulated(Profile):
         InputError : A(h) that does not increase from zero, with the height.
         """
         return cls(*tip_points(coefficients, largest_height, lowest_height))
-
-    @classmethod
-    def from_force_depth(cls, depth: ArrayLike, force: ArrayLike, e_star: float) -> Self:
-        """Return the profile whose force-depth curve is given.
-
-        a = F'(d)/(2 E*) and g(a) = d; f(r) = (2/pi) int_0^(pi/2) g(r sin t) dt. The curve has to be
-        smooth: the derivative makes noise of 0.1 % one of about 1 % in a.
-
-        Source: mdr-5, Eqs. (5.1), (5.75).
-
-        Parameters
-        ----------
-        depth, force : d > 0 [length] and F_N > 0 [force], which increase, shape (k,).
-        e_star : effective modulus [pressure].
-
-        Raises
-        ------
-        InputError : a curve that is none of a profile, because a does not increase with d.
-        """
-        d, reduced = as_numbers(("depth",), depth), as_numbers(("force",), force) / e_star
-        for name, values in (("depth", d), ("force", reduced)):
-            if values.shape != d.shape or values.min() <= 0 or np.diff(values).min() <= 0:
-                raise InputError((name,), "must be positive, increase, and have a value for each d")
-        power, rest = _power_times_spline(d, reduced, 1)
-        # The logarithmic derivative of F is that of the power and of the rest.
-        a = reduced / (2 * d) * (power + d * rest(d, 1))
-        if np.diff(a).min() <= 0:
-            place = ("force", int(np.argmin(np.diff(a))) + 1)
-            raise InputError(place, "the contact radius F'/(2 E*) decreases here: smooth the curve")
-        power, rest = _power_times_spline(a, d, 2)
-        x = a[:, None] * np.sin(np.pi / 2 * _ANGLES)
-        heights = (x**power * np.exp(rest(x))) @ _SHARES
-        return cls(np.append(0.0, a), np.append(0.0, heights), uncertainty=0.0)
 
     def __repr__(self) -> str:
         breaks = f", breaks={list(self._breaks)}" if self._breaks else ""
@@ -442,24 +406,6 @@ def _of_each(function: Callable[..., Array], ends: tuple[Array, ...], radius: Ar
         points = np.flatnonzero(number == i)
         result[points] = function(*annulus, radius[points])
     return result
-
-
-def _power_times_spline(x: Array, y: Array, even: int) -> tuple[float, Callable[..., Array]]:
-    """Return n and log(y/x^n) as a function, for positive x and y.
-
-    It is a spline, and below the first point a polynomial in x^even, as at a smooth tip.
-    """
-    square = x[:4] ** even
-    terms = np.stack([np.log(x[:4]), np.ones(4), square, np.square(square)], axis=1)
-    scale = np.abs(terms).max(axis=0)
-    power, *tip = np.linalg.solve(terms / scale, np.log(y[:4])) / scale
-    spline = make_interp_spline(x, np.log(y) - power * np.log(x), k=min(5, x.size - 1))
-
-    def rest(at: Array, order: int = 0) -> Array:
-        inside = polyval(at**even, tip) if order == 0 else 0.0
-        return np.where(at < x[0], inside, spline(np.maximum(at, x[0]), order))
-
-    return float(power), rest
 
 
 def _checked(r: Array, f: Array) -> tuple[Array, Array]:
