@@ -4,7 +4,7 @@ The interface is one class, and therefore one long file.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from math import inf
 from typing import Any, ClassVar, Final, Self
@@ -41,9 +41,6 @@ NORMAL_QUANTITIES: Final = (
 )
 # Fields of a contact, as `Profile.closed_forms` names them.
 FIELDS: Final = ("pressure", "shear_stress", "slip", "normal_displacement")
-# Attributes that completion offers, in addition to the parameters and the attributes of a table.
-_SHAPE: Final = ("f", "df", "g", "dg", "r", "breaks", "domain", "infinite_pressure_radii")
-_FOR_USERS: Final = ("kind", "formula", "closed_forms", *_SHAPE)
 
 
 class Profile(ABC):
@@ -69,11 +66,6 @@ class Profile(ABC):
         """Raise InputError unless all parameters are positive and finite."""
         for name, value in self.parameters.items():
             vars(self)[name] = as_positive(("profile", name), value)
-
-    def __dir__(self) -> Iterable[str]:
-        """Return the names that completion offers: attributes for users, not for solvers."""
-        shown = {*self.parameters, *_FOR_USERS}
-        return [name for name in super().__dir__() if name in shown or name.startswith("__")]
 
     @property
     def parameters(self) -> dict[str, Any]:
