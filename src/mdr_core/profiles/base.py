@@ -24,7 +24,6 @@ from mdr_core.abel.stress import stress_integral
 from mdr_core.doubles import EPS, LOG_RANGE
 from mdr_core.elementwise import full, number, some, where
 from mdr_core.inversion import invert
-from mdr_core.profiles.power_functions import StickRatios
 from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import as_positive, require_inside
@@ -59,8 +58,6 @@ class Profile(ABC):
     formula: ClassVar[str]
     # Quantities in closed form; all others need quadrature or iteration.
     closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
-    # Closed forms of the stick edge in contact coordinates, by u_x/u_max and by F_x/(mu F_N).
-    stick_ratios: ClassVar[StickRatios | None] = None
 
     def __post_init__(self) -> None:
         """Raise InputError unless all parameters are positive and finite."""
@@ -199,6 +196,11 @@ class Profile(ABC):
     def steepness(self) -> float:
         """Largest local exponent of g; it sets the number of nodes."""
         return max((STEEPNESS, *self.exponents))
+
+    @property
+    def stick_exponents(self) -> tuple[Parameter, Parameter] | None:
+        """Exponents of a power law of depth and of force, in the contact coordinate; else None."""
+        return None
 
     # Methods over the contact coordinate.
 
