@@ -94,20 +94,6 @@ class Tabulated(Profile):
         self._spline = SlopePieces(self.fit.edges, self.fit.rows)
 
     @classmethod
-    def from_area_function(
-        cls, height: ArrayLike, area: ArrayLike, *, uncertainty: float | None = None
-    ) -> Self:
-        """Return the profile of a tip with the cross-section A(h) at the distance h from its end.
-
-        Parameters
-        ----------
-        height : h [length], shape (k,).
-        area : A(h) [length^2], shape (k,).
-        uncertainty : see `Tabulated`.
-        """
-        return cls(_radii(area), height, uncertainty=uncertainty)
-
-    @classmethod
     def from_area_coefficients(
         cls, coefficients: Sequence[float], largest_height: float, lowest_height: float = 0.0
     ) -> Self:
@@ -382,17 +368,7 @@ def tip_points(
             "valid height of at least this, or correct the coefficients"
         )
         raise InputError(("profile", "lowest_height"), detail)
-    return _radii(area), h
-
-
-def _radii(area: ArrayLike) -> Array:
-    """Radii of discs of these areas."""
-    section = as_numbers(("profile", "area"), area)
-    if np.any(section < 0):
-        first = int(np.argmax(section < 0))
-        detail = "A(h) must not be negative: leave out the heights below this one, A = "
-        raise InputError(("profile", "area", first), f"{detail}{section[first]:.4g}")
-    return np.sqrt(section / np.pi)
+    return np.sqrt(area / np.pi), h
 
 
 def _of_each(function: Callable[..., Array], ends: tuple[Array, ...], radius: Array) -> Array:
