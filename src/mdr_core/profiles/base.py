@@ -368,10 +368,10 @@ class Profile(ABC):
         x, s : radii, and contact coordinates from the base of each branch [length], shape (n, m).
         owner : index of the branch of each column, shape (m,).
         """
-        found = np.empty_like(x)
-        for i, branch in enumerate(self.branches):
-            own = owner == i
-            found[:, own] = branch.weight(x[:, own], s[:, own])
+        found, weights = np.empty_like(x), [branch.weight for branch in self.branches]
+        for weight in set(weights):
+            own = np.array([weight is each for each in weights])[owner]
+            found[:, own] = weight(x[:, own], s[:, own])
         return found
 
     def annulus_integrals(

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import cached_property, partial
+from itertools import pairwise
 from typing import ClassVar, Final, Self
 
 import numpy as np
@@ -10,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch, Kernel, arccosine, arccosine_growth, arcsine
-from mdr_core.abel.slope_pieces import SlopePieces
 from mdr_core.abel.stress import stress_integral
 from mdr_core.doubles import EPS, TINY
 from mdr_core.elementwise import in_order, some, where
@@ -19,7 +19,7 @@ from mdr_core.profiles.base import Profile
 from mdr_core.profiles.table_fit import fit_table
 from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
 from mdr_core.quadrature import NODES, composite_rule
-from mdr_core.typing import Array, Flags, Indices, Parameter
+from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import as_numbers, require_finite, single
 
 # Bound on the error of the sums over the pieces: several times the largest in the tests.
@@ -91,7 +91,7 @@ class Tabulated(Profile):
         self.fit = fit_table(self.r, self.values, self._breaks, uncertainty)
         self.meets_points = uncertainty is not None and self.fit.rms <= _MET * uncertainty
         """True if the profile deviates from the points by no more than their uncertainty."""
-        self._spline = SlopePieces(self.fit.edges, self.fit.rows)
+        self._spline = self.fit.pieces
 
     @classmethod
     def from_area_coefficients(
@@ -148,28 +148,24 @@ class Tabulated(Profile):
     @cached_property
     def coordinate_breaks(self) -> Array:
         """Knots and breaks, at which a derivative of g' jumps."""
-        return np.union1d(self.fit.edges[1:-1], self._breaks)
+        return np.union1d(self._spline.edges[1:-1], self._breaks)
 
     @property
     def _edges(self) -> Array:
         """Axis, knots, breaks and the end."""
         return np.concatenate([[0.0], self.coordinate_breaks, [self._end]])
 
-    @cached_property
+    @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         tip = () if self._spline.smooth_tip else (0.0,)
-        jumps = zip(self._breaks, self.fit.flanks, strict=True)
-        return (*tip, *(b for b, (slope, _) in jumps if slope != 0))
+        return (*tip, *(b for _, shape in self._flanks for b in shape.infinite_pressure_radii))
 
     @cached_property
     def _flanks(self) -> tuple[tuple[float, Truncated], ...]:
         """Profiles that are added beyond the breaks, with their coefficients."""
-        return tuple(
-            (factor, shape)
-            for b, (slope, bend) in zip(self._breaks, self.fit.flanks, strict=True)
-            for factor, shape in ((slope, TruncatedCone(b, 1.0)), (bend, RoundedPunch(b, 1.0)))
-            if factor != 0
-        )
+        shapes = (kind(b, 1.0) for b in self._breaks for kind in (TruncatedCone, RoundedPunch))
+        pairs = zip(self.fit.jumps, shapes, strict=True)
+        return tuple((jump, shape) for jump, shape in pairs if jump != 0)
 
     def _require_inside(self, radius: Array) -> None:
         if some(radius > self._end):
@@ -187,7 +183,7 @@ class Tabulated(Profile):
 
     def df(self, radius: Array) -> Array:
         slope = self._under_radius(radius, arccosine_growth)
-        tip = 2 / np.pi * self.fit.rows[0, 0]
+        tip = 2 / np.pi * self._spline.rows[0, 0]
         slope = np.where(radius > 0, slope, tip)[()]
         return self._with_flanks(slope, lambda shape: shape.df(radius))
 
@@ -248,18 +244,10 @@ class Tabulated(Profile):
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
-        starts, stops = self._edges[:-1].tolist(), self._edges[1:].tolist()
-        bases = [max((b for b in self._breaks if b <= start), default=0.0) for start in starts]
-        return tuple(
-            Branch(base, partial(self._weight, base), stop, start)
-            for base, start, stop in zip(bases, starts, stops, strict=True)
-        )
-
-    def branch_weights(self, x: Array, s: Array, owner: Indices) -> Array:
-        """Parameters: see `Profile`."""
-        if not self._flanks:
-            return np.asarray(self._spline.slope(x))
-        return super().branch_weights(x, s, owner)
+        weights = {base: partial(self._weight, base) for base in (0.0, *self._breaks)}
+        ends = pairwise(self._edges.tolist())
+        based = [(max(b for b in weights if b <= start), start, stop) for start, stop in ends]
+        return tuple(Branch(base, weights[base], stop, start) for base, start, stop in based)
 
     def _weight(self, base: float, x: Array, s: Array) -> Array:
         """g'(x) s/x beyond the last break below, `base`."""
@@ -316,7 +304,7 @@ class Tabulated(Profile):
         """
         if not self._spline.smooth_tip:
             return 0.0
-        edges, rows, share = self.fit.edges, self.fit.rows, np.linspace(0.0, 1.0, _SAMPLES)
+        edges, rows, share = self._spline.edges, self._spline.rows, np.linspace(0.0, 1.0, _SAMPLES)
         # On the first piece h' = sum (k - 1) c_k x^(k - 2).
         tip = polyval(edges[1] * share, rows[2:, 0] * np.arange(1.0, len(rows) - 1)).max()
         x = edges[:-1, None] + np.diff(edges)[:, None] * share[1:]
