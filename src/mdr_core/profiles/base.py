@@ -58,6 +58,12 @@ class Profile(ABC):
     formula: ClassVar[str]
     # Quantities in closed form; all others need quadrature or iteration.
     closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
+    is_flat_punch: ClassVar[bool] = False
+    """True if the radius is the same at every load: the punch sticks as a whole."""
+    flattens: bool = False
+    """True if g' may fall towards zero, where the contact radius is ill-conditioned."""
+    steepens: bool = False
+    """True if the contact radius may not resolve the load just beyond a break."""
 
     def __post_init__(self) -> None:
         """Raise InputError unless all parameters are positive and finite."""
@@ -171,21 +177,6 @@ class Profile(ABC):
     def tip_pressure(self) -> Parameter:
         """Limit g'(0)/pi of mean pressure/E* as the load vanishes [1]: zero for smooth tips."""
         return self.dg(number(0.0)) / np.pi
-
-    @property
-    def is_flat_punch(self) -> bool:
-        """True if the radius is the same at every load: the punch sticks as a whole."""
-        return False
-
-    @property
-    def flattens(self) -> bool:
-        """True if g' may fall towards zero, where the contact radius is ill-conditioned."""
-        return False
-
-    @property
-    def steepens(self) -> bool:
-        """True if the contact radius may not resolve the load just beyond a break."""
-        return False
 
     @property
     def exponents(self) -> tuple[float, ...]:
@@ -358,7 +349,8 @@ class Profile(ABC):
     def branches(self) -> tuple[Branch, ...]:
         """Intervals on which g' is smooth except for the root at the start of each."""
         tip = min((1.0, *self.exponents))
-        return (Branch(0.0, lambda x, _: self.dg(x), tip=tip, steepness=self.steepness),)
+        pole = float(np.asarray(self.pole))
+        return (Branch(0.0, lambda x, _: self.dg(x), tip=tip, steepness=self.steepness, pole=pole),)
 
     def branch_weights(self, x: Array, s: Array, owner: Indices) -> Array:
         """Weights g'(x) s/x of the integrals over s [1], shape (n, m).

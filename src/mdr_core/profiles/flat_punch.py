@@ -31,6 +31,7 @@ class FlatPunch(Profile):
     kind: ClassVar[str] = "flat_punch"
     formula: ClassVar[str] = "0 for r ≤ radius, then ∞"
     closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, *FIELDS)
+    is_flat_punch: ClassVar[bool] = True
 
     @property
     def stick_exponents(self) -> tuple[Parameter, Parameter]:
@@ -54,10 +55,6 @@ class FlatPunch(Profile):
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         return (self.radius,)
-
-    @property
-    def is_flat_punch(self) -> bool:
-        return True
 
     def contact_radius(self, coordinate: Array) -> Array:
         return self.radius + 0 * coordinate

@@ -234,9 +234,6 @@ class Paraboloid(PowerLaw):
         gap = atan_gap(a, np.where(root > 0, root, 1.0))
         return (a * a * np.arctan2(a, root) + root * gap) / (pi * self.radius)
 
-    def axis_stress(self, coordinate: Array) -> Array:
-        return self.dg(coordinate) / pi
-
     def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
         """(2/(pi R)) [sqrt(a^2 - r^2) - sqrt(c^2 - r^2)].
 

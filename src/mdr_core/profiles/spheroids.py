@@ -7,7 +7,6 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from mdr_core.abel.displacement import Branch
 from mdr_core.doubles import EPS
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.cancellation_free import tanh_gap
@@ -33,6 +32,7 @@ class Spheroid(Profile):
 
     radius: Parameter
     height: Parameter
+    steepens = True
 
     @property
     def domain(self) -> Parameter:
@@ -45,15 +45,6 @@ class Spheroid(Profile):
     @property
     def pole(self) -> Parameter:
         return self.radius
-
-    @property
-    def steepens(self) -> bool:
-        return True
-
-    @property
-    def branches(self) -> tuple[Branch, ...]:
-        equator = float(np.asarray(self.radius))
-        return (Branch(0.0, lambda x, _: self.dg(x), pole=equator),)
 
     def rounding_at(self, coordinate: Array) -> Parameter:
         """Next to the equator the rounding error of R - a dominates. See `Profile`."""

@@ -65,6 +65,9 @@ class Tabulated(Profile):
     kind: ClassVar[str] = "tabulated"
     formula: ClassVar[str] = "the smoothest admissible profile through, or near, the points (r, f)"
     closed_forms: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_stiffness")
+    normal_method = "piecewise_moments"
+    breaks: tuple[float, ...] = ()
+    domain: float = np.inf
 
     def __init__(
         self,
@@ -76,22 +79,28 @@ class Tabulated(Profile):
         self.r, self.values = _checked(
             *(np.array(as_numbers(("profile", name), each)) for name, each in (("r", r), ("f", f)))
         )
-        self._end = float(np.abs(self.r).max())
+        self.domain = float(np.abs(self.r).max())
         given = as_numbers(("profile", "breaks"), breaks).ravel().tolist()
-        self._breaks = tuple(sorted(given))
+        self.breaks = tuple(sorted(given))
         for i, b in enumerate(given):
-            if not 0 < b < self._end:
-                detail = f"must lie between the axis and the last radius, {self._end:.6g}"
+            if not 0 < b < self.domain:
+                detail = f"must lie between the axis and the last radius, {self.domain:.6g}"
                 raise InputError(("profile", "breaks", i), detail)
         path = ("profile", "uncertainty")
         if uncertainty is not None and not 0 <= single(path, uncertainty) < np.inf:
             detail = "must be a standard uncertainty of the heights, positive or 0"
             raise InputError(path, detail)
         self.uncertainty = uncertainty
-        self.fit = fit_table(self.r, self.values, self._breaks, uncertainty)
+        self.fit = fit_table(self.r, self.values, self.breaks, uncertainty)
         self.meets_points = uncertainty is not None and self.fit.rms <= _MET * uncertainty
         """True if the profile deviates from the points by no more than their uncertainty."""
         self._spline = self.fit.pieces
+        shapes = (kind(b, 1.0) for b in self.breaks for kind in (TruncatedCone, RoundedPunch))
+        pairs = zip(self.fit.jumps, shapes, strict=True)
+        self._flanks = [(jump, shape) for jump, shape in pairs if jump != 0]
+        """Profiles that are added beyond the breaks, with their coefficients."""
+        self.steepens = bool(self._flanks)
+        self.flattens = not self.steepens
 
     @classmethod
     def from_area_coefficients(
@@ -115,61 +124,34 @@ class Tabulated(Profile):
         return cls(*tip_points(coefficients, largest_height, lowest_height))
 
     def __repr__(self) -> str:
-        breaks = f", breaks={list(self._breaks)}" if self._breaks else ""
-        return f"Tabulated({self.r.size} points up to radius {self._end:.6g}{breaks})"
-
-    @property
-    def normal_method(self) -> str:
-        return "piecewise_moments"
+        breaks = f", breaks={list(self.breaks)}" if self.breaks else ""
+        return f"Tabulated({self.r.size} points up to radius {self.domain:.6g}{breaks})"
 
     def rounding_at(self, coordinate: Array) -> Parameter:
         return _ROUNDING
 
     @property
-    def flattens(self) -> bool:
-        return not self._flanks
-
-    @property
-    def steepens(self) -> bool:
-        return bool(self._flanks)
-
-    @property
-    def breaks(self) -> tuple[Parameter, ...]:
-        return self._breaks
-
-    @property
-    def domain(self) -> float:
-        return self._end
-
-    @property
     def scale(self) -> float:
-        return self._end / 2
+        return self.domain / 2
 
     @cached_property
     def coordinate_breaks(self) -> Array:
         """Knots and breaks, at which a derivative of g' jumps."""
-        return np.union1d(self._spline.edges[1:-1], self._breaks)
+        return np.union1d(self._spline.edges[1:-1], self.breaks)
 
     @property
     def _edges(self) -> Array:
         """Axis, knots, breaks and the end."""
-        return np.concatenate([[0.0], self.coordinate_breaks, [self._end]])
+        return np.concatenate([[0.0], self.coordinate_breaks, [self.domain]])
 
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         tip = () if self._spline.smooth_tip else (0.0,)
         return (*tip, *(b for _, shape in self._flanks for b in shape.infinite_pressure_radii))
 
-    @cached_property
-    def _flanks(self) -> tuple[tuple[float, Truncated], ...]:
-        """Profiles that are added beyond the breaks, with their coefficients."""
-        shapes = (kind(b, 1.0) for b in self._breaks for kind in (TruncatedCone, RoundedPunch))
-        pairs = zip(self.fit.jumps, shapes, strict=True)
-        return tuple((jump, shape) for jump, shape in pairs if jump != 0)
-
     def _require_inside(self, radius: Array) -> None:
-        if some(radius > self._end):
-            raise InputError(("profile", "r"), f"the table ends at radius {self._end:.12g}")
+        if some(radius > self.domain):
+            raise InputError(("profile", "r"), f"the table ends at radius {self.domain:.12g}")
 
     def _with_flanks(self, of_spline: Array, value: Callable[[Truncated], Array]) -> Array:
         """Value of the spline plus the values of the flanks."""
@@ -190,7 +172,7 @@ class Tabulated(Profile):
     def _under_radius(self, radius: Array, kernel: Kernel) -> Array:
         """(2/pi) int_0^r g' K dx of the spline."""
         self._require_inside(radius)
-        value = self._spline.under(0.0, self._end, np.ravel(radius), kernel)
+        value = self._spline.under(0.0, self.domain, np.ravel(radius), kernel)
         return (2 / np.pi * value).reshape(np.shape(radius))[()]
 
     def g(self, x: Array) -> Array:
@@ -225,11 +207,11 @@ class Tabulated(Profile):
     def _slope_integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
         """int_0^a density(x) g'(x) dx, by Gauss's rule on each piece."""
         # Halves of the last radius, so that 1/x is smooth on a piece.
-        a, halves = np.ravel(coordinate), self._end / 2.0 ** np.arange(1, -np.log2(EPS))
+        a, halves = np.ravel(coordinate), self.domain / 2.0 ** np.arange(1, -np.log2(EPS))
         edges = np.union1d(self._edges, halves)
         piece = edges[1:-1].searchsorted(a, side="right")
         low, high = np.append(edges[:-1], edges[piece]), np.append(edges[1:], a)
-        base = np.append(0.0, self._breaks)[np.searchsorted(self._breaks, low, side="right")]
+        base = np.append(0.0, self.breaks)[np.searchsorted(self.breaks, low, side="right")]
         # s = sqrt(x^2 - b^2) removes the root of g' at the break below.
         first, last = inverse_hypot(low, base), inverse_hypot(high, base)
         nodes, weights = (part[:, None] for part in composite_rule(NODES))
@@ -244,7 +226,7 @@ class Tabulated(Profile):
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
-        weights = {base: partial(self._weight, base) for base in (0.0, *self._breaks)}
+        weights = {base: partial(self._weight, base) for base in (0.0, *self.breaks)}
         ends = pairwise(self._edges.tolist())
         based = [(max(b for b in weights if b <= start), start, stop) for start, stop in ends]
         return tuple(Branch(base, weights[base], stop, start) for base, start, stop in based)
@@ -267,7 +249,7 @@ class Tabulated(Profile):
         """By Gauss's rule on the pieces. Parameters: see `Profile`."""
 
         def under(low: float, at: Array) -> Array:
-            return 2 / np.pi * self._spline.under(low, self._end, at, arccosine)
+            return 2 / np.pi * self._spline.under(low, self.domain, at, arccosine)
 
         spline = _of_each(under, (c,), r)
         return self._with_flanks(spline, lambda shape: shape.slip_integral(c, r))
@@ -316,7 +298,7 @@ class Tabulated(Profile):
         ends = (slope <= 0) | (rise > slope / x)
         # The sample before the first one at which the pressure may not fall.
         known = np.append(0.0, x)[ends.argmax()] if ends.any() else np.inf
-        return float(min([known, *self._breaks]))
+        return float(min([known, *self.breaks]))
 
     def axis_stress(self, coordinate: Array) -> Array:
         stress = self._slope_integral(np.reciprocal, coordinate) / np.pi
