@@ -16,6 +16,7 @@ import numpy as np
 from mdr_core.elementwise import every, full, in_order, is_number, some, where
 from mdr_core.inversion import Function, invert
 from mdr_core.profiles import Profile
+from mdr_core.profiles.power_functions import power_stick
 from mdr_core.quadrature import NODES, gauss_legendre
 from mdr_core.typing import Array
 from mdr_core.validation import require_inside
@@ -91,8 +92,8 @@ def stick_edge(
     -------
     c and a - c in the contact coordinate.
     """
-    if closed := profile.stick_ratios:
-        inner, annulus = closed[of_force](ratio, rest)
+    if exponents := profile.stick_exponents:
+        inner, annulus = power_stick(exponents[of_force], ratio, rest)
         return coordinate * inner, coordinate * annulus
     step = force_step if of_force else depth_step
     slope_at = profile.force_slope if of_force else profile.depth_slope

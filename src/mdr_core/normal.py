@@ -148,7 +148,7 @@ class NormalContact(validity.ResultsOverLoads):
         fit, loaded = self.profile.fit, self.loaded
         a = np.ravel(np.where(loaded, self.contact_radius, self.profile.domain))
         # On the axis itself a sharp tip that is not excluded has an infinite pressure.
-        r = np.stack([np.minimum(_TIP * fit.edges[1], a / 2), *np.outer(_PLACES, a)])
+        r = np.stack([np.minimum(_TIP * fit.pieces.edges[1], a / 2), *np.outer(_PLACES, a)])
         root = np.sqrt((a - r) * (a + r))[..., None]
         # s = sqrt(x^2 - r^2) has nodes near the axis too.
         shares, weights = composite_rule(*_OF_PRESSURE)

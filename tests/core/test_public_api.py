@@ -80,20 +80,6 @@ def test_impact_conserves_energy_and_rebounds_as_measured() -> None:
         assert energy_error < 1e-13
 
 
-@pytest.mark.parametrize("kind", mdr.KINDS)
-def test_completion_of_a_profile_offers_what_a_user_needs(kind: str) -> None:
-    names = {"radius": 1.0, "tip_radius": 2.0, "terms": (mdr.PowerTerm(1.0, 2.0),)}
-    names |= {"radii": (1.0, -2.0)}
-    names |= {"r": [0.0, 1.0, 2.0], "f": [0.0, 1.0, 4.0]}
-    cls = mdr.KINDS[kind]
-    needed = inspect.signature(cls).parameters.values()
-    given = {p.name: names.get(p.name, 0.5) for p in needed if p.default is p.empty}
-    profile = cls(**given)
-    offered = [name for name in dir(profile) if not name.startswith("_")]
-    assert {"kind", "formula", "f", "df", "g", "dg", *profile.parameters} <= set(offered)
-    assert len(offered) <= 25
-
-
 def test_every_exported_object_has_a_readable_form() -> None:
     for value in (BALL, PAIR, mdr.Body(1.0, 0.3), mdr.PowerTerm(1.0, 2.0), mdr.Notice("a", "b")):
         assert repr(value).startswith(f"{type(value).__name__}(")

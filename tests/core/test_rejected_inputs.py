@@ -107,8 +107,6 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
     (normal_contact(Cone(1.0), normal_force=MASKED), ("load", "normal_force", 1), "masked"),
     (lambda: Cone(MASKED), ("profile", "slope", 1), "masked"),
     (lambda: Tabulated([0.0, 1.0, 2.0], MASKED), ("profile", "f", 1), "masked"),
-    (lambda: Tabulated.from_area_function([0.0, 1.0, 2.0], MASKED), ("profile", "area", 1), "mask"),
-    (lambda: Tabulated.from_force_depth(MASKED, [1.0, 2.0, 3.0], 1.0), ("depth", 1), "masked"),
     (lambda: fields.pressure(HERTZ, MASKED), ("radius", 1), "masked"),
     (
         lambda: subsurface.stress(HERTZ, 0.0, 0.0, MASKED, poissons_ratio=0.3),

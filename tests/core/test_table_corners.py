@@ -174,7 +174,7 @@ def test_work_of_friction_over_a_nearly_flat_part(count: int) -> None:
     table = Tabulated(r, r * r / 200 + 2 * np.maximum(r - 0.52, 0.0))
     contact = solve(table, 1.0, indentation_depth=0.028)
     force, a = 0.3 * float(contact.normal_force), float(contact.contact_radius)
-    ends = np.append(table.fit.edges[table.fit.edges < a], a)[:, None]
+    ends = np.append(table.fit.pieces.edges[table.fit.pieces.edges < a], a)[:, None]
     nodes, weights = np.polynomial.legendre.leggauss(24)
     half = np.diff(ends, axis=0) / 2
     g = table.g(np.ravel(ends[:-1] + half * (1 + nodes)))
@@ -232,7 +232,7 @@ def test_work_of_friction_where_noise_leaves_a_flat(part: float) -> None:
     contact = solve(table, 1.0, contact_radius=0.178)
     moved = 0.3 * part * float(contact.indentation_depth)
     found = tangential.solve(contact, 1.0, 0.3, tangential_displacement=moved)
-    c, edges = float(found.stick_radius), table.fit.edges
+    c, edges = float(found.stick_radius), table.fit.pieces.edges
     ends = np.concatenate([[c], edges[(edges > c) & (edges < 0.178)], [0.178]])[:, None, None]
     nodes, weights = (each[:, None] for each in np.polynomial.legendre.leggauss(24))
     half = np.diff(ends, axis=0) / 2

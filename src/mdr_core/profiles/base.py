@@ -4,7 +4,7 @@ The interface is one class, and therefore one long file.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from math import inf
 from typing import Any, ClassVar, Final, Self
@@ -24,7 +24,6 @@ from mdr_core.abel.stress import stress_integral
 from mdr_core.doubles import EPS, LOG_RANGE
 from mdr_core.elementwise import full, number, some, where
 from mdr_core.inversion import invert
-from mdr_core.profiles.power_functions import StickRatios
 from mdr_core.profiles.power_law_integral import power_law_integral
 from mdr_core.typing import Array, Flags, Indices, Parameter
 from mdr_core.validation import as_positive, require_inside
@@ -41,9 +40,6 @@ NORMAL_QUANTITIES: Final = (
 )
 # Fields of a contact, as `Profile.closed_forms` names them.
 FIELDS: Final = ("pressure", "shear_stress", "slip", "normal_displacement")
-# Attributes that completion offers, in addition to the parameters and the attributes of a table.
-_SHAPE: Final = ("f", "df", "g", "dg", "r", "breaks", "domain", "infinite_pressure_radii")
-_FOR_USERS: Final = ("kind", "formula", "closed_forms", *_SHAPE)
 
 
 class Profile(ABC):
@@ -62,18 +58,17 @@ class Profile(ABC):
     formula: ClassVar[str]
     # Quantities in closed form; all others need quadrature or iteration.
     closed_forms: ClassVar[tuple[str, ...]] = ("normal_force", "mean_pressure", "normal_stiffness")
-    # Closed forms of the stick edge in contact coordinates, by u_x/u_max and by F_x/(mu F_N).
-    stick_ratios: ClassVar[StickRatios | None] = None
+    is_flat_punch: ClassVar[bool] = False
+    """True if the radius is the same at every load: the punch sticks as a whole."""
+    flattens: bool = False
+    """True if g' may fall towards zero, where the contact radius is ill-conditioned."""
+    steepens: bool = False
+    """True if the contact radius may not resolve the load just beyond a break."""
 
     def __post_init__(self) -> None:
         """Raise InputError unless all parameters are positive and finite."""
         for name, value in self.parameters.items():
             vars(self)[name] = as_positive(("profile", name), value)
-
-    def __dir__(self) -> Iterable[str]:
-        """Return the names that completion offers: attributes for users, not for solvers."""
-        shown = {*self.parameters, *_FOR_USERS}
-        return [name for name in super().__dir__() if name in shown or name.startswith("__")]
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -184,21 +179,6 @@ class Profile(ABC):
         return self.dg(number(0.0)) / np.pi
 
     @property
-    def is_flat_punch(self) -> bool:
-        """True if the radius is the same at every load: the punch sticks as a whole."""
-        return False
-
-    @property
-    def flattens(self) -> bool:
-        """True if g' may fall towards zero, where the contact radius is ill-conditioned."""
-        return False
-
-    @property
-    def steepens(self) -> bool:
-        """True if the contact radius may not resolve the load just beyond a break."""
-        return False
-
-    @property
     def exponents(self) -> tuple[float, ...]:
         """Exponents of powers of which g is a sum; none if all lie from 1 to `STEEPNESS`."""
         return ()
@@ -207,6 +187,11 @@ class Profile(ABC):
     def steepness(self) -> float:
         """Largest local exponent of g; it sets the number of nodes."""
         return max((STEEPNESS, *self.exponents))
+
+    @property
+    def stick_exponents(self) -> tuple[Parameter, Parameter] | None:
+        """Exponents of a power law of depth and of force, in the contact coordinate; else None."""
+        return None
 
     # Methods over the contact coordinate.
 
@@ -364,7 +349,8 @@ class Profile(ABC):
     def branches(self) -> tuple[Branch, ...]:
         """Intervals on which g' is smooth except for the root at the start of each."""
         tip = min((1.0, *self.exponents))
-        return (Branch(0.0, lambda x, _: self.dg(x), tip=tip, steepness=self.steepness),)
+        pole = float(np.asarray(self.pole))
+        return (Branch(0.0, lambda x, _: self.dg(x), tip=tip, steepness=self.steepness, pole=pole),)
 
     def branch_weights(self, x: Array, s: Array, owner: Indices) -> Array:
         """Weights g'(x) s/x of the integrals over s [1], shape (n, m).
@@ -374,10 +360,10 @@ class Profile(ABC):
         x, s : radii, and contact coordinates from the base of each branch [length], shape (n, m).
         owner : index of the branch of each column, shape (m,).
         """
-        found = np.empty_like(x)
-        for i, branch in enumerate(self.branches):
-            own = owner == i
-            found[:, own] = branch.weight(x[:, own], s[:, own])
+        found, weights = np.empty_like(x), [branch.weight for branch in self.branches]
+        for weight in set(weights):
+            own = np.array([weight is each for each in weights])[owner]
+            found[:, own] = weight(x[:, own], s[:, own])
         return found
 
     def annulus_integrals(

@@ -54,11 +54,8 @@ class Flanked(Profile):
         b = self.flank_start
         return b + past, np.sqrt(past * (2 * b + past))
 
-    def _flank_energy(self, past: Array) -> Array:
-        """int F_N/E* dg from b to b + past [length^3]."""
-        return self._over_flank(self._flank_force, past)
-
     def _over_flank(self, factor: Callable[[Array, Array], Array], past: Array) -> Array:
+        """Integral of a factor of x and s over g, from b to b + past."""
         b = self.flank_start
 
         def density(s: Array) -> Array:

@@ -9,7 +9,6 @@ from mdr_core.abel.annulus import Annulus
 from mdr_core.elementwise import full, where
 from mdr_core.errors import InputError
 from mdr_core.profiles.base import FIELDS, NORMAL_QUANTITIES, Profile
-from mdr_core.profiles.power_functions import StickRatios, linear_stick
 from mdr_core.typing import Array, Parameter
 
 
@@ -32,8 +31,12 @@ class FlatPunch(Profile):
     kind: ClassVar[str] = "flat_punch"
     formula: ClassVar[str] = "0 for r ≤ radius, then ∞"
     closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, *FIELDS)
-    # Source: mdr-5, Eqs. (5.31), (5.33).
-    stick_ratios: ClassVar[StickRatios] = (linear_stick, linear_stick)
+    is_flat_punch: ClassVar[bool] = True
+
+    @property
+    def stick_exponents(self) -> tuple[Parameter, Parameter]:
+        """Source: mdr-5, Eqs. (5.31), (5.33)."""
+        return 1.0, 1.0
 
     @property
     def breaks(self) -> tuple[Parameter, ...]:
@@ -52,10 +55,6 @@ class FlatPunch(Profile):
     @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         return (self.radius,)
-
-    @property
-    def is_flat_punch(self) -> bool:
-        return True
 
     def contact_radius(self, coordinate: Array) -> Array:
         return self.radius + 0 * coordinate

@@ -4,7 +4,6 @@
 so that a sweep over exponents is bit-identical to its cases. Source: notes, §4.
 """
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -46,32 +45,11 @@ def kappa(exponent: Parameter) -> Array:
     return np.pi / inverse
 
 
-# c/a and 1 - c/a as functions of q and 1 - q, where q is the load divided by the full-slip load
-# [1].
-_StickRatio = Callable[[Array, Array], tuple[Array, Array]]
-StickRatios = tuple[_StickRatio, _StickRatio]
-"""Closed form under a displacement and under a force."""
-
-
-def linear_stick(ratio: Array, rest: Array) -> tuple[Array, Array]:
-    """Return c/a and 1 - c/a for c/a = rest = 1 - ratio."""
-    return rest, ratio
-
-
-def square_stick(ratio: Array, rest: Array) -> tuple[Array, Array]:
-    """Return c/a and 1 - c/a for (c/a)^2 = rest = 1 - ratio."""
-    k = np.sqrt(rest)
-    return k, ratio / (1 + k)
-
-
-def cubic_stick(ratio: Array, rest: Array) -> tuple[Array, Array]:
-    """Return c/a and 1 - c/a for (c/a)^3 = rest = 1 - ratio."""
-    k = np.cbrt(rest)
-    return k, ratio / (1 + k * (1 + k))
-
-
 def power_stick(exponent: Parameter, ratio: Array, rest: Array) -> tuple[Array, Array]:
-    """Return c/a and 1 - c/a for (c/a)^exponent = rest = 1 - ratio. Source: notes, §4."""
+    """Return c/a and 1 - c/a for (c/a)^exponent = rest = 1 - ratio.
+
+    The ratio is the load divided by the load of full slip [1]. Source: notes, §4.
+    """
     with np.errstate(divide="ignore"):
         exact = where(ratio < 0.5, np.log1p(-np.minimum(ratio, 0.5)), np.log(rest))
     e = exact / exponent

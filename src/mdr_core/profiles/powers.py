@@ -1,7 +1,6 @@
 """Powers of the radius: cone, paraboloid and C r^n."""
 
 from dataclasses import dataclass
-from functools import partial
 from math import inf, pi
 from typing import ClassVar
 
@@ -12,14 +11,10 @@ from mdr_core.elementwise import where
 from mdr_core.profiles.base import FIELDS, NORMAL_QUANTITIES, Profile
 from mdr_core.profiles.cancellation_free import atan_gap
 from mdr_core.profiles.power_functions import (
-    StickRatios,
-    cubic_stick,
     kappa,
     power,
     power_root,
     power_slope,
-    power_stick,
-    square_stick,
 )
 from mdr_core.typing import Array, Flags, Parameter
 
@@ -31,9 +26,9 @@ class PowerLaw(Profile):
     exponent: Parameter
 
     @property
-    def stick_ratios(self) -> StickRatios:  # type: ignore[override]  # a constant of other kinds
-        """Source: mdr-5, Eqs. (5.29), (5.31)."""
-        return partial(power_stick, self.exponent), partial(power_stick, self.exponent + 1)
+    def stick_exponents(self) -> tuple[Parameter, Parameter]:
+        """Source: mdr-5, Eqs. (5.12), (5.16), (5.29), (5.31)."""
+        return self.exponent, self.exponent + 1
 
     def f(self, radius: Array) -> Array:
         with np.errstate(over="ignore", under="ignore"):
@@ -164,8 +159,6 @@ class Paraboloid(PowerLaw):
     exponent: ClassVar[float] = 2.0  # type: ignore[misc]  # a field of other powers
     formula: ClassVar[str] = "r²/(2·radius)"
     closed_forms: ClassVar[tuple[str, ...]] = (*NORMAL_QUANTITIES, *FIELDS)
-    # Source: mdr-5, Eqs. (5.12), (5.16).
-    stick_ratios: ClassVar[StickRatios] = (square_stick, cubic_stick)
 
     @property
     def body_radii(self) -> tuple[Parameter, Parameter]:
@@ -240,9 +233,6 @@ class Paraboloid(PowerLaw):
         root = np.sqrt((r - a) * (r + a))
         gap = atan_gap(a, np.where(root > 0, root, 1.0))
         return (a * a * np.arctan2(a, root) + root * gap) / (pi * self.radius)
-
-    def axis_stress(self, coordinate: Array) -> Array:
-        return self.dg(coordinate) / pi
 
     def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
         """(2/(pi R)) [sqrt(a^2 - r^2) - sqrt(c^2 - r^2)].

@@ -88,9 +88,9 @@ class Series(Profile):
         return tuple((float(kappa(n)) * c, n) for c, n in self._powers)
 
     @cached_property
-    def _positive(self) -> bool:
-        """True if no term is negative."""
-        return all(c > 0 for c, _ in self._powers)
+    def flattens(self) -> bool:  # type: ignore[override]  # a constant of other kinds
+        """True if a term is negative. See `Profile`."""
+        return any(c < 0 for c, _ in self._powers)
 
     @cached_property
     def domain(self) -> float:
@@ -103,7 +103,7 @@ class Series(Profile):
     def rounding_at(self, coordinate: Array) -> Parameter:
         """The bound includes cancellation between positive and negative terms. See `Profile`."""
         rounding = 4e-14 + 8e-15 * max(self.exponents)
-        if self._positive:
+        if not self.flattens:
             return rounding
         terms = np.array(
             [(depth, 2 * n / (n + 1) * depth) for depth, n in self._depths(coordinate)]
@@ -126,10 +126,6 @@ class Series(Profile):
         with np.errstate(all="ignore"):
             total: Any = sum(parts) * factor
         return where(np.isnan(total), inf, total)
-
-    @property
-    def flattens(self) -> bool:
-        return not self._positive
 
     @property
     def exponents(self) -> tuple[float, ...]:
@@ -167,7 +163,7 @@ class Series(Profile):
             return self._total(pairs, coordinate)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
-        if not self._positive or any(2 < n < 4 for _, n in self._powers):
+        if self.flattens or any(2 < n < 4 for _, n in self._powers):
             return coordinate < 0
         return (
             self._total(n * (n - 3 if n >= 4 else -1) * d for d, n in self._depths(coordinate)) <= 0

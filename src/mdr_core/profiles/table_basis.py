@@ -12,7 +12,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import BSpline, PPoly
 from scipy.sparse import csr_array
 
-from mdr_core.abel.slope_pieces import heights
+from mdr_core.abel.slope_pieces import SlopePieces, heights
 from mdr_core.profiles.table_points import TablePoints
 from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
 from mdr_core.typing import Array, Flags, Indices
@@ -34,12 +34,10 @@ _TESTED: Final = 8
 class TableFit:
     """Slope of a table's equivalent profile, and what the points leave open. Dimensional."""
 
-    edges: Array
-    """Knots [length], shape (k + 1,)."""
-    rows: Array
-    """Coefficients of g' by powers of the distance from the knot below, shape (degree + 1, k)."""
-    flanks: list[list[float]]
-    """Jumps of the slope [1] and of the curvature [1/length] at each declared break."""
+    pieces: SlopePieces
+    """Slope g' without the images of jumps."""
+    jumps: list[float]
+    """Jumps of the slope [1] and of the curvature [1/length], in turn, at each declared break."""
     rms: float
     """Root mean square of the deviation from the points [length]."""
     largest: tuple[float, float]
@@ -232,9 +230,8 @@ class TableBasis:
         possible = self.spline(spread)
         many = spread.reshape(len(spread), -1)
         return TableFit(
-            self.knots * end,
-            rows * powers,
-            jumps.tolist(),
+            SlopePieces(self.knots * end, rows * powers),
+            jumps.ravel().tolist(),
             height * root_mean_square(off * np.minimum(self.points.weight, 1.0)),
             (height * float(abs(off[worst])), end * float(self.points.x[worst])),
             (possible, possible.antiderivative(), possible.antiderivative(2)),

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from scipy.linalg import qr_multiply, solve_triangular
+from scipy.linalg import lstsq
 from scipy.optimize import nnls
 from scipy.special import stdtrit
 
@@ -231,12 +231,8 @@ def _by_rows(basis: TableBasis, chosen: "_Model", given: Array) -> Array:
     free = np.isnan(given)
     result = np.where(free, 0.0, given)
     right = (right - system @ result)[order]
-    rotated, triangle, column = qr_multiply(system[order][:, free], right, pivoting=True)
-    # Few points leave coefficients open: these are zero.
-    size = np.abs(np.diagonal(triangle))
-    rank = np.count_nonzero(size > EPS * size[0])
-    known = np.flatnonzero(free)[column[:rank]]
-    result[known] = solve_triangular(triangle[:rank, :rank], rotated[:rank])
+    # Few points leave coefficients open: these are small.
+    result[free] = lstsq(system[order][:, free], right, EPS, lapack_driver="gelsy")[0]
     return result
 
 

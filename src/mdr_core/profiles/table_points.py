@@ -63,7 +63,9 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
         advice = off_axis(r, f) or "reverse their sign"
         raise InputError(("profile", "f"), f"the heights fall away from the axis: {advice}")
     weight, rounding, distinct = np.sqrt(count), 0.0, np.diff(x, append=2.0) > _NEAR * x / x.size
-    of_radius, of_height = _rounding(given[0], given[1], x.size) if x.size > 2 else (0.0, 0.0)
+    # On an even grid the unit of the radii is the spacing, which is no rounding.
+    steps = np.array([1 / x.size, 1.0]) if x.size > 2 else np.zeros(2)
+    of_radius, of_height = map(_rounding, given, _FINEST_STEP * steps)
     if max(of_radius, of_height) > _EXACT and distinct.sum() > 1:
         # An error of the radius is one of the height on a slope.
         slope = np.interp(x, x[distinct], np.gradient(y[distinct], x[distinct]))
@@ -88,16 +90,10 @@ def off_axis(r: Array, f: Array) -> str:
     return f"if r is the position on a scan, subtract that of the axis, near {axis:.4g}{reverse}"
 
 
-def _rounding(x: Array, y: Array, count: int) -> tuple[float, float]:
-    """Standard errors of radii and heights that are multiples of a unit, zero if they are not.
-
-    `count` radii differ. On an even grid the unit is the spacing, which is no rounding.
-    """
-    found = []
-    for values, steps in ((x, 1 / count), (y, 1.0)):
-        unit = _common_unit(values)
-        found.append(unit / np.sqrt(12) if unit < _FINEST_STEP * steps else 0.0)
-    return found[0], found[1]
+def _rounding(values: Array, coarsest: float) -> float:
+    """Standard error of numbers that are multiples of a unit below a limit; else zero."""
+    unit = _common_unit(values)
+    return unit / np.sqrt(12) if unit < coarsest else 0.0
 
 
 def _common_unit(values: Array) -> float:

@@ -2,16 +2,15 @@
 
 from collections.abc import Callable, Sequence
 from functools import cached_property, partial
+from itertools import pairwise
 from typing import ClassVar, Final, Self
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
-from scipy.interpolate import make_interp_spline
 
 from mdr_core.abel.annulus import Annulus, inverse_hypot
 from mdr_core.abel.displacement import Branch, Kernel, arccosine, arccosine_growth, arcsine
-from mdr_core.abel.slope_pieces import SlopePieces
 from mdr_core.abel.stress import stress_integral
 from mdr_core.doubles import EPS, TINY
 from mdr_core.elementwise import in_order, some, where
@@ -20,15 +19,13 @@ from mdr_core.profiles.base import Profile
 from mdr_core.profiles.table_fit import fit_table
 from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
 from mdr_core.quadrature import NODES, composite_rule
-from mdr_core.typing import Array, Flags, Indices, Parameter
+from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import as_numbers, require_finite, single
 
 # Bound on the error of the sums over the pieces: several times the largest in the tests.
 _ROUNDING: Final = 2e-13
 # Deviation that is within a standard uncertainty.
 _MET: Final = 1.1
-# Nodes and weights of a mean over the angles, in which g(r sin t) is smooth.
-_ANGLES, _SHARES = composite_rule(16, 8)
 # Points of a piece at which the increase of g'(x)/x is sampled.
 _SAMPLES: Final = 16
 # Points of a tip from the coefficients of its area function.
@@ -68,6 +65,9 @@ class Tabulated(Profile):
     kind: ClassVar[str] = "tabulated"
     formula: ClassVar[str] = "the smoothest admissible profile through, or near, the points (r, f)"
     closed_forms: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_stiffness")
+    normal_method = "piecewise_moments"
+    breaks: tuple[float, ...] = ()
+    domain: float = np.inf
 
     def __init__(
         self,
@@ -79,36 +79,28 @@ class Tabulated(Profile):
         self.r, self.values = _checked(
             *(np.array(as_numbers(("profile", name), each)) for name, each in (("r", r), ("f", f)))
         )
-        self._end = float(np.abs(self.r).max())
+        self.domain = float(np.abs(self.r).max())
         given = as_numbers(("profile", "breaks"), breaks).ravel().tolist()
-        self._breaks = tuple(sorted(given))
+        self.breaks = tuple(sorted(given))
         for i, b in enumerate(given):
-            if not 0 < b < self._end:
-                detail = f"must lie between the axis and the last radius, {self._end:.6g}"
+            if not 0 < b < self.domain:
+                detail = f"must lie between the axis and the last radius, {self.domain:.6g}"
                 raise InputError(("profile", "breaks", i), detail)
         path = ("profile", "uncertainty")
         if uncertainty is not None and not 0 <= single(path, uncertainty) < np.inf:
             detail = "must be a standard uncertainty of the heights, positive or 0"
             raise InputError(path, detail)
         self.uncertainty = uncertainty
-        self.fit = fit_table(self.r, self.values, self._breaks, uncertainty)
+        self.fit = fit_table(self.r, self.values, self.breaks, uncertainty)
         self.meets_points = uncertainty is not None and self.fit.rms <= _MET * uncertainty
         """True if the profile deviates from the points by no more than their uncertainty."""
-        self._spline = SlopePieces(self.fit.edges, self.fit.rows)
-
-    @classmethod
-    def from_area_function(
-        cls, height: ArrayLike, area: ArrayLike, *, uncertainty: float | None = None
-    ) -> Self:
-        """Return the profile of a tip with the cross-section A(h) at the distance h from its end.
-
-        Parameters
-        ----------
-        height : h [length], shape (k,).
-        area : A(h) [length^2], shape (k,).
-        uncertainty : see `Tabulated`.
-        """
-        return cls(_radii(area), height, uncertainty=uncertainty)
+        self._spline = self.fit.pieces
+        shapes = (kind(b, 1.0) for b in self.breaks for kind in (TruncatedCone, RoundedPunch))
+        pairs = zip(self.fit.jumps, shapes, strict=True)
+        self._flanks = [(jump, shape) for jump, shape in pairs if jump != 0]
+        """Profiles that are added beyond the breaks, with their coefficients."""
+        self.steepens = bool(self._flanks)
+        self.flattens = not self.steepens
 
     @classmethod
     def from_area_coefficients(
@@ -131,99 +123,35 @@ class Tabulated(Profile):
         """
         return cls(*tip_points(coefficients, largest_height, lowest_height))
 
-    @classmethod
-    def from_force_depth(cls, depth: ArrayLike, force: ArrayLike, e_star: float) -> Self:
-        """Return the profile whose force-depth curve is given.
-
-        a = F'(d)/(2 E*) and g(a) = d; f(r) = (2/pi) int_0^(pi/2) g(r sin t) dt. The curve has to be
-        smooth: the derivative makes noise of 0.1 % one of about 1 % in a.
-
-        Source: mdr-5, Eqs. (5.1), (5.75).
-
-        Parameters
-        ----------
-        depth, force : d > 0 [length] and F_N > 0 [force], which increase, shape (k,).
-        e_star : effective modulus [pressure].
-
-        Raises
-        ------
-        InputError : a curve that is none of a profile, because a does not increase with d.
-        """
-        d, reduced = as_numbers(("depth",), depth), as_numbers(("force",), force) / e_star
-        for name, values in (("depth", d), ("force", reduced)):
-            if values.shape != d.shape or values.min() <= 0 or np.diff(values).min() <= 0:
-                raise InputError((name,), "must be positive, increase, and have a value for each d")
-        power, rest = _power_times_spline(d, reduced, 1)
-        # The logarithmic derivative of F is that of the power and of the rest.
-        a = reduced / (2 * d) * (power + d * rest(d, 1))
-        if np.diff(a).min() <= 0:
-            place = ("force", int(np.argmin(np.diff(a))) + 1)
-            raise InputError(place, "the contact radius F'/(2 E*) decreases here: smooth the curve")
-        power, rest = _power_times_spline(a, d, 2)
-        x = a[:, None] * np.sin(np.pi / 2 * _ANGLES)
-        heights = (x**power * np.exp(rest(x))) @ _SHARES
-        return cls(np.append(0.0, a), np.append(0.0, heights), uncertainty=0.0)
-
     def __repr__(self) -> str:
-        breaks = f", breaks={list(self._breaks)}" if self._breaks else ""
-        return f"Tabulated({self.r.size} points up to radius {self._end:.6g}{breaks})"
-
-    @property
-    def normal_method(self) -> str:
-        return "piecewise_moments"
+        breaks = f", breaks={list(self.breaks)}" if self.breaks else ""
+        return f"Tabulated({self.r.size} points up to radius {self.domain:.6g}{breaks})"
 
     def rounding_at(self, coordinate: Array) -> Parameter:
         return _ROUNDING
 
     @property
-    def flattens(self) -> bool:
-        return not self._flanks
-
-    @property
-    def steepens(self) -> bool:
-        return bool(self._flanks)
-
-    @property
-    def breaks(self) -> tuple[Parameter, ...]:
-        return self._breaks
-
-    @property
-    def domain(self) -> float:
-        return self._end
-
-    @property
     def scale(self) -> float:
-        return self._end / 2
+        return self.domain / 2
 
     @cached_property
     def coordinate_breaks(self) -> Array:
         """Knots and breaks, at which a derivative of g' jumps."""
-        return np.union1d(self.fit.edges[1:-1], self._breaks)
+        return np.union1d(self._spline.edges[1:-1], self.breaks)
 
     @property
     def _edges(self) -> Array:
         """Axis, knots, breaks and the end."""
-        return np.concatenate([[0.0], self.coordinate_breaks, [self._end]])
+        return np.concatenate([[0.0], self.coordinate_breaks, [self.domain]])
 
-    @cached_property
+    @property
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         tip = () if self._spline.smooth_tip else (0.0,)
-        jumps = zip(self._breaks, self.fit.flanks, strict=True)
-        return (*tip, *(b for b, (slope, _) in jumps if slope != 0))
-
-    @cached_property
-    def _flanks(self) -> tuple[tuple[float, Truncated], ...]:
-        """Profiles that are added beyond the breaks, with their coefficients."""
-        return tuple(
-            (factor, shape)
-            for b, (slope, bend) in zip(self._breaks, self.fit.flanks, strict=True)
-            for factor, shape in ((slope, TruncatedCone(b, 1.0)), (bend, RoundedPunch(b, 1.0)))
-            if factor != 0
-        )
+        return (*tip, *(b for _, shape in self._flanks for b in shape.infinite_pressure_radii))
 
     def _require_inside(self, radius: Array) -> None:
-        if some(radius > self._end):
-            raise InputError(("profile", "r"), f"the table ends at radius {self._end:.12g}")
+        if some(radius > self.domain):
+            raise InputError(("profile", "r"), f"the table ends at radius {self.domain:.12g}")
 
     def _with_flanks(self, of_spline: Array, value: Callable[[Truncated], Array]) -> Array:
         """Value of the spline plus the values of the flanks."""
@@ -237,14 +165,14 @@ class Tabulated(Profile):
 
     def df(self, radius: Array) -> Array:
         slope = self._under_radius(radius, arccosine_growth)
-        tip = 2 / np.pi * self.fit.rows[0, 0]
+        tip = 2 / np.pi * self._spline.rows[0, 0]
         slope = np.where(radius > 0, slope, tip)[()]
         return self._with_flanks(slope, lambda shape: shape.df(radius))
 
     def _under_radius(self, radius: Array, kernel: Kernel) -> Array:
         """(2/pi) int_0^r g' K dx of the spline."""
         self._require_inside(radius)
-        value = self._spline.under(0.0, self._end, np.ravel(radius), kernel)
+        value = self._spline.under(0.0, self.domain, np.ravel(radius), kernel)
         return (2 / np.pi * value).reshape(np.shape(radius))[()]
 
     def g(self, x: Array) -> Array:
@@ -279,11 +207,11 @@ class Tabulated(Profile):
     def _slope_integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
         """int_0^a density(x) g'(x) dx, by Gauss's rule on each piece."""
         # Halves of the last radius, so that 1/x is smooth on a piece.
-        a, halves = np.ravel(coordinate), self._end / 2.0 ** np.arange(1, -np.log2(EPS))
+        a, halves = np.ravel(coordinate), self.domain / 2.0 ** np.arange(1, -np.log2(EPS))
         edges = np.union1d(self._edges, halves)
         piece = edges[1:-1].searchsorted(a, side="right")
         low, high = np.append(edges[:-1], edges[piece]), np.append(edges[1:], a)
-        base = np.append(0.0, self._breaks)[np.searchsorted(self._breaks, low, side="right")]
+        base = np.append(0.0, self.breaks)[np.searchsorted(self.breaks, low, side="right")]
         # s = sqrt(x^2 - b^2) removes the root of g' at the break below.
         first, last = inverse_hypot(low, base), inverse_hypot(high, base)
         nodes, weights = (part[:, None] for part in composite_rule(NODES))
@@ -298,18 +226,10 @@ class Tabulated(Profile):
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
-        starts, stops = self._edges[:-1].tolist(), self._edges[1:].tolist()
-        bases = [max((b for b in self._breaks if b <= start), default=0.0) for start in starts]
-        return tuple(
-            Branch(base, partial(self._weight, base), stop, start)
-            for base, start, stop in zip(bases, starts, stops, strict=True)
-        )
-
-    def branch_weights(self, x: Array, s: Array, owner: Indices) -> Array:
-        """Parameters: see `Profile`."""
-        if not self._flanks:
-            return np.asarray(self._spline.slope(x))
-        return super().branch_weights(x, s, owner)
+        weights = {base: partial(self._weight, base) for base in (0.0, *self.breaks)}
+        ends = pairwise(self._edges.tolist())
+        based = [(max(b for b in weights if b <= start), start, stop) for start, stop in ends]
+        return tuple(Branch(base, weights[base], stop, start) for base, start, stop in based)
 
     def _weight(self, base: float, x: Array, s: Array) -> Array:
         """g'(x) s/x beyond the last break below, `base`."""
@@ -329,7 +249,7 @@ class Tabulated(Profile):
         """By Gauss's rule on the pieces. Parameters: see `Profile`."""
 
         def under(low: float, at: Array) -> Array:
-            return 2 / np.pi * self._spline.under(low, self._end, at, arccosine)
+            return 2 / np.pi * self._spline.under(low, self.domain, at, arccosine)
 
         spline = _of_each(under, (c,), r)
         return self._with_flanks(spline, lambda shape: shape.slip_integral(c, r))
@@ -366,7 +286,7 @@ class Tabulated(Profile):
         """
         if not self._spline.smooth_tip:
             return 0.0
-        edges, rows, share = self.fit.edges, self.fit.rows, np.linspace(0.0, 1.0, _SAMPLES)
+        edges, rows, share = self._spline.edges, self._spline.rows, np.linspace(0.0, 1.0, _SAMPLES)
         # On the first piece h' = sum (k - 1) c_k x^(k - 2).
         tip = polyval(edges[1] * share, rows[2:, 0] * np.arange(1.0, len(rows) - 1)).max()
         x = edges[:-1, None] + np.diff(edges)[:, None] * share[1:]
@@ -378,7 +298,7 @@ class Tabulated(Profile):
         ends = (slope <= 0) | (rise > slope / x)
         # The sample before the first one at which the pressure may not fall.
         known = np.append(0.0, x)[ends.argmax()] if ends.any() else np.inf
-        return float(min([known, *self._breaks]))
+        return float(min([known, *self.breaks]))
 
     def axis_stress(self, coordinate: Array) -> Array:
         stress = self._slope_integral(np.reciprocal, coordinate) / np.pi
@@ -418,17 +338,7 @@ def tip_points(
             "valid height of at least this, or correct the coefficients"
         )
         raise InputError(("profile", "lowest_height"), detail)
-    return _radii(area), h
-
-
-def _radii(area: ArrayLike) -> Array:
-    """Radii of discs of these areas."""
-    section = as_numbers(("profile", "area"), area)
-    if np.any(section < 0):
-        first = int(np.argmax(section < 0))
-        detail = "A(h) must not be negative: leave out the heights below this one, A = "
-        raise InputError(("profile", "area", first), f"{detail}{section[first]:.4g}")
-    return np.sqrt(section / np.pi)
+    return np.sqrt(area / np.pi), h
 
 
 def _of_each(function: Callable[..., Array], ends: tuple[Array, ...], radius: Array) -> Array:
@@ -442,24 +352,6 @@ def _of_each(function: Callable[..., Array], ends: tuple[Array, ...], radius: Ar
         points = np.flatnonzero(number == i)
         result[points] = function(*annulus, radius[points])
     return result
-
-
-def _power_times_spline(x: Array, y: Array, even: int) -> tuple[float, Callable[..., Array]]:
-    """Return n and log(y/x^n) as a function, for positive x and y.
-
-    It is a spline, and below the first point a polynomial in x^even, as at a smooth tip.
-    """
-    square = x[:4] ** even
-    terms = np.stack([np.log(x[:4]), np.ones(4), square, np.square(square)], axis=1)
-    scale = np.abs(terms).max(axis=0)
-    power, *tip = np.linalg.solve(terms / scale, np.log(y[:4])) / scale
-    spline = make_interp_spline(x, np.log(y) - power * np.log(x), k=min(5, x.size - 1))
-
-    def rest(at: Array, order: int = 0) -> Array:
-        inside = polyval(at**even, tip) if order == 0 else 0.0
-        return np.where(at < x[0], inside, spline(np.maximum(at, x[0]), order))
-
-    return float(power), rest
 
 
 def _checked(r: Array, f: Array) -> tuple[Array, Array]:

@@ -20,15 +20,12 @@ class Tipped(Flanked):
     """Profile whose tip is another profile up to the radius b."""
 
     tip_radius: Parameter
+    steepens = True
 
     @property
     @abstractmethod
     def _tip(self) -> Paraboloid | Sphere:
         """Profile up to b."""
-
-    @property
-    def steepens(self) -> bool:
-        return True
 
     @cached_property
     def coordinate_breaks(self) -> Array:
@@ -72,7 +69,7 @@ class Tipped(Flanked):
     def reduced_energy(self, coordinate: Array) -> Array:
         b = self.flank_start
         inner = self._tip.reduced_energy(np.minimum(coordinate, b))
-        return inner + self._flank_energy(np.maximum(coordinate - b, 0.0))
+        return inner + self._over_flank(self._flank_force, np.maximum(coordinate - b, 0.0))
 
     def axis_stress(self, coordinate: Array) -> Array:
         b = self.flank_start

@@ -34,6 +34,10 @@ class Truncated(Flanked):
     def branches(self) -> tuple[Branch, ...]:
         return (Branch(float(np.asarray(self.flat_radius)), self.weight),)
 
+    @property
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
+        return (self.flat_radius,)
+
     def _flank_slope(self, x: Array, s: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):
             return self.weight(x, s) * x / s
@@ -68,7 +72,7 @@ class Truncated(Flanked):
         return self._flank_force(*self.flank(coordinate))
 
     def reduced_energy(self, coordinate: Array) -> Array:
-        return self._flank_energy(coordinate)
+        return self._over_flank(self._flank_force, coordinate)
 
     def pressure_kernel(
         self, annulus: Annulus, radius: Array, beyond: Array | None = None
@@ -114,6 +118,10 @@ class RoundedPunch(Truncated):
     kind: ClassVar[str] = "rounded_punch"
     formula: ClassVar[str] = "0 for r ≤ flat_radius, then (r − flat_radius)²/(2·rounding_radius)"
 
+    @property
+    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
+        return ()
+
     def f(self, radius: Array) -> Array:
         return np.square(np.maximum(radius - self.flat_radius, 0.0)) / (2 * self.rounding_radius)
 
@@ -154,10 +162,6 @@ class TruncatedCone(Truncated):
     kind: ClassVar[str] = "truncated_cone"
     formula: ClassVar[str] = "0 for r ≤ flat_radius, then slope·(r − flat_radius)"
 
-    @property
-    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
-        return (self.flat_radius,)
-
     def f(self, radius: Array) -> Array:
         return self.slope * np.maximum(radius - self.flat_radius, 0.0)
 
@@ -195,10 +199,6 @@ class TruncatedParaboloid(Truncated):
     kind: ClassVar[str] = "truncated_paraboloid"
     formula: ClassVar[str] = "0 for r ≤ flat_radius, then (r² − flat_radius²)/(2·radius)"
     closed_forms: ClassVar[tuple[str, ...]] = NORMAL_QUANTITIES
-
-    @property
-    def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
-        return (self.flat_radius,)
 
     def f(self, radius: Array) -> Array:
         return np.square(inverse_hypot(radius, self.flat_radius)) / (2 * self.radius)
