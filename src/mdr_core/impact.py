@@ -14,10 +14,8 @@ from numpy.typing import ArrayLike
 from mdr_core import history, normal, validity
 from mdr_core.elementwise import full, number
 from mdr_core.errors import AccuracyError, InputError, Notice
-from mdr_core.history import ContactState, slip_memory
-from mdr_core.history.slip_memory import LoadPoints
-from mdr_core.history.step_results import REGIMES, StepResults
-from mdr_core.interval_moments import interval_moments
+from mdr_core.history import ContactState, LoadHistory
+from mdr_core.history.load_path import SampledPath
 from mdr_core.inversion import invert
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
@@ -356,25 +354,23 @@ def _rebound(scene: _Scene, motion: _Motion, guess: Array) -> tuple[Array, bool,
         (2, n); n = 1 means free motion.
     """
     start, mass, velocity = scene.start, scene.tangential_mass, scene.tangential_velocity
-    step, time = motion.step, np.cumsum(motion.step)
+    step, time = motion.step, np.append(0.0, np.cumsum(motion.step))
     u = np.interp(time, *guess) if guess.shape[1] > 1 else velocity * time
-    moments = interval_moments(start.profile, over_forces=False)
-    apart, straight_on = slip_memory.separated(0.0, 0.0), np.zeros(u.shape, dtype=bool)
     for _ in range(_SWEEPS):
-        points = LoadPoints(motion.depth, u / start.displacement_ratio, straight_on)
-        path = StepResults(moments, points, apart, "no_contact")
-        ratio = start.friction_coefficient * path.shear[:-1] / motion.force[:-1]
+        points = np.array([np.append(0.0, motion.depth), u])
+        path = SampledPath(start, ("indentation_depth", "tangential_displacement"), points)
+        course = LoadHistory(path, start.e_star, start.polyline)
+        ratio = course.tangential_force[:-1] / (start.e_star * motion.force[:-1])
         ratio = np.concatenate([ratio[:1], ratio, ratio[-1:]])
         low, high = ratio[:-1], ratio[1:]
         impulse = np.cumsum(motion.impulse * (low + high) / 2)
         before = velocity - np.append(0.0, impulse[:-1]) / mass
         moved = step * before - motion.lag * (2 * low + high) / (3 * mass)
-        last, u = u, np.cumsum(moved)
+        last, u = u, np.append(0.0, np.cumsum(moved))
         if np.abs(u - last).max() <= _CONVERGED * np.abs(u).max():
             break
     else:
         return None
-    slides = bool(np.all(path.regime[:-1] == REGIMES.index("full_slip")))
-    dissipated = start.energy_unit * path.dissipation.sum()
+    slides, dissipated = np.all(course.regime[:-1] == "full_slip"), course.dissipation.sum()
     results = np.array([velocity - impulse[-1] / mass, time[-1], impulse[-1], dissipated])
-    return results, slides, np.array([np.append(0.0, time), np.append(0.0, u)])
+    return results, bool(slides), np.array([time, u])

@@ -12,7 +12,7 @@ from mdr_core.elementwise import number, where
 from mdr_core.history import slip_memory
 from mdr_core.history.slip_layout import NORMAL
 from mdr_core.history.slip_memory import Polyline, VertexTree, read_only
-from mdr_core.history.step_results import SHORT, TractionVertices
+from mdr_core.history.tractions import SHORT, TractionVertices
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.materials import Material, normal_modulus, shear_modulus
 from mdr_core.profiles import Profile

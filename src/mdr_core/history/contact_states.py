@@ -14,7 +14,7 @@ from mdr_core.history.contact_state import ContactState, Edge, LoadPointResults
 from mdr_core.history.friction_work import dissipation
 from mdr_core.history.slip_layout import COLUMNS
 from mdr_core.history.slip_memory import Polylines, read_only
-from mdr_core.history.step_results import REGIMES, TractionVertices, decides_regime, regime_codes
+from mdr_core.history.tractions import REGIMES, TractionVertices, decides_regime, regime_codes
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.materials import Material, normal_modulus, shear_modulus
 from mdr_core.profiles import Profile

@@ -126,4 +126,4 @@ def cycles(
             "the tangential load is lost in the rounding errors of the normal load: increase it"
         )
         raise AccuracyError(detail, ("cycles", "tangential"))
-    return LoadCycles(history.path, e_star, history.results, count)
+    return LoadCycles(history.path, e_star, history.before, count)

@@ -35,17 +35,6 @@ from mdr_core.typing import Array, Flags, Indices
 _VERTICES: Final = 3
 
 
-class LoadPoints(NamedTuple):
-    """Ends of straight load steps."""
-
-    normal: Array
-    """Normal coordinate, shape (n,); <= 0 in separation."""
-    tangential: Array
-    """Tangential coordinate, shape (n,)."""
-    continues: Flags
-    """True for steps that continue the straight line of the step before, shape (n,)."""
-
-
 class Polyline(NamedTuple):
     """Polyline from the axis to the load point."""
 
@@ -154,18 +143,25 @@ class Polylines(NamedTuple):
         return VertexTree(parent, rows, top, (top, *self.load_points), load_points)
 
 
-def follow(start: Polyline, points: LoadPoints) -> tuple[VertexTree, Polyline]:
+def follow(start: Polyline, path: Array, continues: Flags) -> tuple[VertexTree, Polyline]:
     """Return the vertices of the polylines after straight steps, and the last polyline.
 
     A load point with a normal coordinate <= 0 separates the bodies and erases the memory.
+
+    Parameters
+    ----------
+    start : polyline before the first step.
+    path : normal and tangential coordinate of the load points, shape (2, n).
+    continues : True for steps that continue the straight line of the step before, shape (n,).
     """
-    path, held = np.array(points[:2]), as_tree(start)
-    made, most = held.parent.size, held.parent.size + _VERTICES * points.normal.size
+    held, path = as_tree(start), np.ascontiguousarray(path)
+    made, count = held.parent.size, continues.size
+    most = made + _VERTICES * count
     number, parent = np.arange(most), np.empty(most, dtype=np.intp)
-    vertices, top = np.empty((2, most)), np.empty(points.normal.size, dtype=np.intp)
+    vertices, top = np.empty((2, most)), np.empty(count, dtype=np.intp)
     parent[:made], vertices[:, :made] = held.parent, held.vertices
-    rows, stack = _stacked(start, top.size)
-    made = stack.run(path, points.continues, number, parent, vertices, top)
+    rows, stack = _stacked(start, count)
+    made = stack.run(path, continues, number, parent, vertices, top)
     line = Polyline(read_only(rows[: stack.top + 1].copy()), *path[:, -1].tolist())
     return VertexTree(parent[:made], vertices[:, :made], top, held.start, path), line
 
