@@ -32,7 +32,7 @@ def test_compiled_kernel_is_bit_identical_to_python(
     spread = {"random": (0.3, 0.1), "constant": (0.3, 0.0), "separated": (0.3, 0.4)}[control]
     points = np.array([rng.normal(*spread, count), np.cumsum(rng.normal(0.0, 0.2, count))])
     steps = points, np.arange(count) % 3 > 0
-    start = slip_memory.separated(0.0, 0.0)
+    start = slip_memory.separated(np.zeros((2, 1)))
     compiled = slip_memory.follow(start, *steps)
     swept = friction_work.swept(compiled[0])
     vertices, path = np.tile(compiled[1].vertices, (9, 1)), rng.normal(0.3, 0.2, (4, 9))
@@ -61,7 +61,7 @@ def test_pieces_without_room_are_counted() -> None:
     rng = np.random.default_rng(21)
     normal, tangential = rng.normal(0.3, 0.1, 200), np.cumsum(rng.normal(0.0, 0.2, 200))
     steps = np.array([normal, tangential]), np.zeros(200, dtype=bool)
-    tree, _ = slip_memory.follow(slip_memory.separated(0.0, 0.0), *steps)
+    tree, _ = slip_memory.follow(slip_memory.separated(np.zeros((2, 1))), *steps)
     before, tops = np.zeros((2, 200)), np.append(-1, tree.top[:-1])
     before[:, 1:] = tree.path[:, :-1]
     counts = [

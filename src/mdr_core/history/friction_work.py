@@ -54,14 +54,14 @@ def _work(moments: IntervalMoments, pieces: Array) -> Array:
 
 def swept(tree: VertexTree) -> Array:
     """Return the pieces that the slip front sweeps on every step, see `slip_kernel.SlipFront`."""
-    count = tree.top.size
-    starts = zip(tree.start, (tree.top, *tree.path), strict=True)
-    tops, *before = (np.append(np.asarray(first), later)[:count] for first, later in starts)
+    count, (top, load_points) = tree.top.size, tree.start
+    tops = np.append(top, tree.top)[:count]
+    before = np.hstack([load_points, tree.path])[:, :count].copy()
     room = 2 * (count + tree.parent.size)
     while True:
         found = np.empty((_NUMBERS, room))
         front = kernel.SlipFront(found)
-        made = front.run(tree.parent, tree.vertices, tops, np.array(before), tree.path)
+        made = front.run(tree.parent, tree.vertices, tops, before, tree.path)
         if made <= room:
             return found[:, :made]
         room = made

@@ -21,7 +21,7 @@ from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import ContactState
 from mdr_core.history.slip_layout import NORMAL
-from mdr_core.history.slip_memory import Polyline
+from mdr_core.history.slip_memory import Polylines
 from mdr_core.history.tractions import REGIMES
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices
@@ -65,17 +65,17 @@ class SavedState(NamedTuple):
             raise InputError(("initial_state", "contact"), f"{detail}: repeat all four")
         return cls(**given)
 
-    def restored(self, normal: float, tangential: float) -> Polyline:
+    def restored(self, load_point: Array) -> Polylines:
         """Return the polyline up to the load point.
 
         Raises InputError if the polyline is impossible, because friction limits its slope.
         """
-        place = "initial_state", "polyline"
+        place, normal = ("initial_state", "polyline"), float(load_point[0])
         if {not self.polyline, self.regime == "no_contact"} != {normal <= 0}:
             raise InputError(place, "must be empty, and the regime no_contact, only in separation")
         if normal <= 0:
-            return slip_memory.separated(normal, tangential)
-        line = slip_memory.through(np.array(self.polyline), normal, tangential)
+            return slip_memory.separated(load_point[:, None])
+        line = slip_memory.through(np.array(self.polyline), load_point)
         growth = np.diff(line.vertices[:, :NORMAL], axis=0)
         # Rounding errors may let a sum decrease along a polyline.
         good = (growth.min(axis=1) >= -ROUNDING * normal) & (growth.max(axis=1) > 0)

@@ -17,7 +17,7 @@ from mdr_core.history import load_path, slip_memory
 from mdr_core.history.contact_state import ContactState, unloaded
 from mdr_core.history.load_path import UNLOADED, SampledPath, SavedState
 from mdr_core.history.slip_layout import NORMAL
-from mdr_core.history.slip_memory import Polyline
+from mdr_core.history.slip_memory import Polylines
 from mdr_core.history.tractions import (
     REGIMES,
     TractionVertices,
@@ -34,7 +34,7 @@ from mdr_core.validation import not_negative, only_one
 # steps are computed again: that is faster than storing them, and memory is bounded.
 _KEPT: Final = 262_144
 # Vertices of a range of steps, and the polyline after these steps.
-_Block = tuple[TractionVertices, Polyline]
+_Block = tuple[TractionVertices, Polylines]
 # Location in the request of the normal load from which a history starts.
 _BEGIN: Final = ("initial_state", "normal")
 
@@ -46,7 +46,7 @@ class LoadHistory(validity.ResultsOverLoads):
     path: SampledPath
     e_star: float | Material
     """Effective modulus [pressure], or the material that has it."""
-    before: Polyline
+    before: Polylines
     """Slip memory at the start."""
     quantities: ClassVar[tuple[str, ...]] = (
         "step",
@@ -182,9 +182,9 @@ class LoadHistory(validity.ResultsOverLoads):
     def state(self) -> ContactState:
         """State of the contact at the end of the history."""
         vertices, line = self._end
-        if self.path.over_forces and line.in_contact:
-            span = vertices.conjugate_step[vertices.tree.last[1:]]
-            line = slip_memory.stacked(span, slip_memory.as_tree(line).slope[1:])
+        if self.path.over_forces and len(line.vertices):
+            above = vertices.tree.last[1:]
+            line = slip_memory.stacked(vertices.conjugate_step[above], vertices.tree.slope[above])
         return replace(self.path.start, polyline=line, before=line)
 
     @property
@@ -328,7 +328,7 @@ def solve(
             raise InputError(_BEGIN, not_negative("normal_force"))
     path = load_path.build(start, pressed, pushed, samples_per_step, begin)
     _require_solvable(path)
-    return LoadHistory(path, e_star, begin.restored(*path.coordinates[:, 0].tolist()))
+    return LoadHistory(path, e_star, begin.restored(path.coordinates[:, 0]))
 
 
 def _require_solvable(path: SampledPath) -> None:
