@@ -23,10 +23,11 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array
 from mdr_core.validation import (
-    FINITE,
     POSITIVE,
-    as_numbers,
+    common_shape,
+    only_one,
     reject,
+    require_finite,
     require_inside,
     require_single_positive,
     require_tolerance,
@@ -122,12 +123,12 @@ class Impact(validity.ContactResults):
 
 
 class _Motion(NamedTuple):
-    """Samples of the normal motion after first contact, the last one at separation."""
+    """Samples of the normal motion from first contact to separation."""
 
     depth: Array
-    """Indentation depths [length]."""
+    """Indentation depths, from zero to zero [length]."""
     force: Array
-    """F_N/E* [length^2]."""
+    """F_N/E* after first contact [length^2]."""
     step: Array
     """Times since the sample before [time]."""
     impulse: Array
@@ -235,22 +236,13 @@ def solve(
 
 def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> tuple[Array, ...]:
     """Return the velocities in their common shape; raise InputError if they are invalid."""
-    speeds = as_numbers(("normal_velocity",), normal_velocity)
-    along = as_numbers(("tangential_velocity",), tangential_velocity)
-    approaches = (speeds > 0) & np.isfinite(speeds)
-    for name, values, good, detail in (
-        ("normal_velocity", speeds, approaches, f"{POSITIVE} and finite: approach is positive"),
-        ("tangential_velocity", along, np.isfinite(along), FINITE),
-    ):
-        if not values.size:
-            raise InputError((name,), "at least one value is needed")
-        reject((name,), values, ~good, detail)
-    try:
-        return np.broadcast_arrays(speeds, along)
-    except ValueError:
-        shapes = f"has the shape {along.shape}, but normal_velocity {speeds.shape}"
-        detail = f"{shapes}: give one, or as many"
-        raise InputError(("tangential_velocity",), detail) from None
+    _, speeds = only_one((), {"normal_velocity": normal_velocity})
+    _, along = only_one((), {"tangential_velocity": tangential_velocity})
+    detail = f"{POSITIVE} and finite: approach is positive"
+    reject(("normal_velocity",), speeds, ~((speeds > 0) & np.isfinite(speeds)), detail)
+    require_finite(("tangential_velocity",), along)
+    common_shape(("tangential_velocity",), along, "normal_velocity", speeds)
+    return np.broadcast_arrays(speeds, along)
 
 
 def _largest_coordinates(profile: Profile, energy: Array) -> Array:
@@ -336,7 +328,7 @@ def _motion(scene: _Scene, count: int) -> _Motion:
     depth, force = (np.append(each, each[-2::-1]) for each in (depth, force))
     speed, step = np.append(speed, -speed[-2::-1]), np.append(step, step[::-1])
     lag = mass * (speed[:-1] * step - np.diff(depth))
-    return _Motion(depth[1:], force[1:], step, -mass * np.diff(speed), lag)
+    return _Motion(depth, force[1:], step, -mass * np.diff(speed), lag)
 
 
 def _rebound(scene: _Scene, motion: _Motion, guess: Array) -> tuple[Array, bool, Array] | None:
@@ -357,8 +349,8 @@ def _rebound(scene: _Scene, motion: _Motion, guess: Array) -> tuple[Array, bool,
     step, time = motion.step, np.append(0.0, np.cumsum(motion.step))
     u = np.interp(time, *guess) if guess.shape[1] > 1 else velocity * time
     for _ in range(_SWEEPS):
-        points = np.array([np.append(0.0, motion.depth), u])
-        path = SampledPath(start, ("indentation_depth", "tangential_displacement"), points)
+        loads = np.array([motion.depth, u])
+        path = SampledPath(start, ("indentation_depth", "tangential_displacement"), loads)
         course = LoadHistory(path, start.e_star, start.polyline)
         ratio = course.tangential_force[:-1] / (start.e_star * motion.force[:-1])
         ratio = np.concatenate([ratio[:1], ratio, ratio[-1:]])

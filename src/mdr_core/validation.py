@@ -221,7 +221,7 @@ def common_shape(
     except ValueError:
         listed = ", ".join(str(shape) for shape in shapes if shape)
         detail = f"the shape {given.shape} does not agree with {others}, {listed}"
-        raise InputError(path, detail) from None
+        raise InputError(path, f"{detail}: give one, or as many") from None
 
 
 def require_representable(path: tuple[str | int, ...], used: Flags, *results: Array) -> None:

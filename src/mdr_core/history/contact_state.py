@@ -1,6 +1,6 @@
 """State of a contact after a load history, and one straight step from it."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, ClassVar, NamedTuple
@@ -313,6 +313,7 @@ def advance(
     require_inside(("indentation_depth",), beyond, profile)
     load_point = depth, displacement / state.displacement_ratio
     line, kept = slip_memory.moved(state.polyline, load_point)
-    following = replace(state, polyline=line, before=state.polyline)
+    moduli = state.e_star, state.g_star, state.friction_coefficient
+    following = ContactState(profile, *moduli, line, state.polyline)
     following.known_edges.extend(state.known_edges[:kept])
     return following

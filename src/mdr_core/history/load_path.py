@@ -112,6 +112,8 @@ class SampledPath:
     def loads(self) -> Array:
         """Loads at the start and at each sample, shape (2, n + 1)."""
         count, start, stop = self.per_step, self.points[:, :-1, None], self.points[:, 1:, None]
+        if count == 1:
+            return self.points
         share = np.arange(1, count + 1)
         # Proportional forces stay proportional to rounding error, even where they approach zero.
         samples = start * ((count - share) / count) + stop * (share / count)

@@ -107,7 +107,9 @@ class Polylines(NamedTuple):
     @property
     def sizes(self) -> Indices:
         """Number of vertices of each polyline, 0 in separation."""
-        return np.diff(self.ends, prepend=0)
+        sizes = self.ends.copy()
+        sizes[1:] -= self.ends[:-1]
+        return sizes
 
     @property
     def owners(self) -> Indices:

@@ -7,6 +7,7 @@ Source: mindlin-deresiewicz; notes, §15.
 """
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 from math import inf
 from typing import Final
 
@@ -24,7 +25,7 @@ from mdr_core.typing import Array
 from mdr_core.validation import (
     as_curve,
     require_not_negative,
-    require_single_positive,
+    require_positive,
     require_type,
     single,
 )
@@ -108,17 +109,14 @@ def solve(
     require_type("contact", contact, NormalContact, "a contact from normal.solve")
     if np.ndim(contact.normal_force) or not contact.normal_force > 0:
         raise InputError(("contact",), "must be under a single normal load")
-    given = g_star, friction_coefficient, None, rig_compliance, None
-    known = dict(zip(PARAMETERS, given, strict=True))
-    fit = [name for name in PARAMETERS[:4] if known[name] is None] if fit is None else fit
     names = "g_star", "friction_coefficient", "rig_compliance"
-    require_fitted(fit, PARAMETERS, {name: known[name] for name in names})
-    for name in names[:2]:
-        if (value := known[name]) is not None:
-            require_single_positive((name,), value)
-    if rig_compliance is not None:
-        place = ("rig_compliance",)
-        require_not_negative(place, np.asarray(single(place, rig_compliance)))
+    known = dict(zip(names, (g_star, friction_coefficient, rig_compliance), strict=True))
+    fit = [name for name in PARAMETERS[:4] if known.get(name) is None] if fit is None else fit
+    require_fitted(fit, PARAMETERS, known)
+    for name, value in known.items():
+        if value is not None:
+            require = require_not_negative if name == "rig_compliance" else require_positive
+            require((name,), np.asarray(single((name,), value)))
     lists = {"tangential_displacement": tangential_displacement}
     curve = as_curve("displacements", **lists, tangential_force=tangential_force)
     if curve[0].size < _FEWEST * len(fit) or np.ptp(curve[0]) == 0:
@@ -214,24 +212,28 @@ class _Loop:
         law = tangential.solve(pressed, pressed.e_star, 1.0, tangential_displacement=part * depth)
         reached = law.tangential_force / pressed.normal_force
         some = slice(None, None, max(1, self.force.size // _POINTS))
-        measured, ones = self.force[some] / self.size, np.ones_like(self.force[some])
-        best, found, on_first = inf, None, self.places(np.zeros(5)) / self.amplitude
-        for in_rig in _IN_RIG[: 1 if self.known["rig_compliance"] == 0 else None].tolist():
-            places = (1 - in_rig) * part + in_rig * reached
-            for ratio in _TRIED.tolist():
-                first = np.interp(on_first * ratio, places, reached)
-                columns = np.column_stack([self.branches(first)[some], ones])
-                (limit, offset), *_ = np.linalg.lstsq(columns, measured)
-                whole = self.amplitude / ratio
-                left = float(np.sum(np.square(columns @ [limit, offset] - measured)))
-                if limit > 0 and left < best:
-                    friction = limit * self.size / float(pressed.normal_force)
-                    g_star = friction * float(pressed.e_star) * depth / ((1 - in_rig) * whole)
-                    rig = in_rig / ratio / limit
-                    best, found = left, [np.log(g_star), np.log(friction), offset, rig, 0.0]
-        if found is None:
+        measured, on_first = self.force[some] / self.size, self.places(np.zeros(5)) / self.amplitude
+        rigs = _IN_RIG[: 1 if self.known["rig_compliance"] == 0 else None].tolist()
+        tried = list(product(rigs, _TRIED.tolist()))
+        firsts = (
+            np.interp(on_first * ratio, (1 - in_rig) * part + in_rig * reached, reached)
+            for in_rig, ratio in tried
+        )
+        shapes = np.array([self.branches(first)[some] for first in firsts])
+        rising = shapes - shapes.mean(axis=1)[:, None]
+        sizes = np.linalg.norm(rising, axis=1)
+        # The sum of squares is least where the part of the forces in the shape is largest.
+        along = rising @ measured / np.where(sizes > 0, sizes, inf)
+        best = int(along.argmax())
+        if not along[best] > 0:
             raise InputError(("tangential_force",), "must rise with the displacement")
-        values = np.array([self.known[name] for name in PARAMETERS], dtype=float) / self.units
+        (in_rig, ratio), limit = tried[best], float(along[best] / sizes[best])
+        friction = limit * self.size / float(pressed.normal_force)
+        whole = (1 - in_rig) * self.amplitude / ratio
+        g_star = friction * float(pressed.e_star) * depth / whole
+        offset = measured.mean() - limit * shapes[best].mean()
+        found = [np.log(g_star), np.log(friction), offset, in_rig / ratio / limit, 0.0]
+        values = np.array([self.known.get(name) for name in PARAMETERS], dtype=float) / self.units
         given = [*np.log(values[:2]), 0.0, values[3], 0.0]
         return np.where(np.isin(range(5), self.free), found, given)
 
