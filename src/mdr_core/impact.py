@@ -24,8 +24,8 @@ from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array
 from mdr_core.validation import (
     POSITIVE,
+    as_numbers,
     common_shape,
-    only_one,
     reject,
     require_finite,
     require_inside,
@@ -236,8 +236,11 @@ def solve(
 
 def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> tuple[Array, ...]:
     """Return the velocities in their common shape; raise InputError if they are invalid."""
-    _, speeds = only_one((), {"normal_velocity": normal_velocity})
-    _, along = only_one((), {"tangential_velocity": tangential_velocity})
+    speeds = as_numbers(("normal_velocity",), normal_velocity)
+    along = as_numbers(("tangential_velocity",), tangential_velocity)
+    for name, values in (("normal_velocity", speeds), ("tangential_velocity", along)):
+        if not values.size:
+            raise InputError((name,), "at least one value is needed")
     detail = f"{POSITIVE} and finite: approach is positive"
     reject(("normal_velocity",), speeds, ~((speeds > 0) & np.isfinite(speeds)), detail)
     require_finite(("tangential_velocity",), along)
