@@ -68,12 +68,12 @@ class LoadPointResults(Results):
         "dissipation",
     )
 
-    def of_contacts(self, values: NDArray[Any]) -> Any:
+    def _of_contacts(self, values: NDArray[Any]) -> Any:
         """Return the values of all contacts; those of a single state are numbers."""
         return values
 
     @cached_property
-    def moments(self) -> IntervalMoments:
+    def _moments(self) -> IntervalMoments:
         """Moments over intervals of depth."""
         return interval_moments(self.profile, over_forces=False)
 
@@ -81,27 +81,28 @@ class LoadPointResults(Results):
     def vertices(self) -> TractionVertices:
         """Vertices of all polylines."""
         tree = self.polyline.tree(self.polyline.load_points)
-        return TractionVertices(self.moments.part(self.polyline.owners), tree)
+        return TractionVertices(self._moments.part(self.polyline.owners), tree)
 
-    @property
+    @cached_property
     def load_points(self) -> Edge:
         """Contact whose edge the load point of each contact is."""
-        raise NotImplementedError
+        edges, at = self.vertices, self.vertices.tree.at_load_points
+        return Edge(*map(at, (edges.coordinate, edges.conjugate, edges.shear)))
 
     @property
     def in_contact(self) -> Any:
         """True unless the bodies are separated."""
-        return self.of_contacts(self.polyline.sizes > 0)
+        return self._of_contacts(self.polyline.sizes > 0)
 
     @property
     def indentation_depth(self) -> Any:
         """d [length]; negative in separation."""
-        return self.of_contacts(self.polyline.load_points[0])
+        return self._of_contacts(self.polyline.load_points[0])
 
     @property
     def tangential_displacement(self) -> Any:
         """u_x [length]."""
-        return self.displacement_ratio * self.of_contacts(self.polyline.load_points[1])
+        return self.displacement_ratio * self._of_contacts(self.polyline.load_points[1])
 
     @property
     def displacement_ratio(self) -> Any:
@@ -138,13 +139,13 @@ class LoadPointResults(Results):
     def tangential_energy(self) -> Any:
         """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length]."""
         square = self.vertices.tree.at_load_points(self.vertices.square)
-        return self.energy_unit * self.of_contacts(square)
+        return self.energy_unit * self._of_contacts(square)
 
     @cached_property
     def dissipation(self) -> Any:
         """Energy dissipated by friction on the step that led here [force length]."""
         step = self.before.tree(self.polyline.load_points)
-        return self.energy_unit * self.of_contacts(dissipation(self.moments, step))
+        return self.energy_unit * self._of_contacts(dissipation(self._moments, step))
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -160,7 +161,7 @@ class ContactState(LoadPointResults):
     """Edges of the first vertices; a step passes the edges that it keeps to the next state."""
     quantities: ClassVar[tuple[str, ...]] = (*LoadPointResults.quantities, "slip_fronts")
 
-    def of_contacts(self, values: NDArray[Any]) -> Any:
+    def _of_contacts(self, values: NDArray[Any]) -> Any:
         """Return the only one of the values."""
         return values[0]
 
@@ -184,7 +185,7 @@ class ContactState(LoadPointResults):
         force = profile.reduced_force(coordinate)
         grown = force - below.force
         if span < SHORT * depth:
-            grown = span * self.moments.mean_slope(below.coordinate, coordinate)
+            grown = span * self._moments.mean_slope(below.coordinate, coordinate)
         return Edge(coordinate, force, below.shear + slope * grown)
 
     @property
@@ -209,7 +210,7 @@ class ContactState(LoadPointResults):
         """Slope of the anchor over depth below each vertex but the first, from -1 to 1."""
         return read_only(self.vertices.tree.slope[1:])
 
-    @property
+    @cached_property
     def load_points(self) -> Edge:
         """Contact whose edge the load point is."""
         return self._edges[-1]

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
-from mdr_core.history.contact_state import ContactState, Edge, LoadPointResults
+from mdr_core.history.contact_state import ContactState, LoadPointResults
 from mdr_core.history.slip_memory import read_only
 from mdr_core.history.tractions import REGIMES, decides_regime, regime_codes
 from mdr_core.materials import Material, normal_modulus, shear_modulus
@@ -58,12 +58,6 @@ class ContactStates(LoadPointResults):
         if isinstance(index, int | np.integer):
             return ContactState(*given)
         return ContactStates(*given, self.regime_before[rows])
-
-    @cached_property
-    def load_points(self) -> Edge:
-        """Contact whose edge the load point of each contact is."""
-        edges, at = self.vertices, self.vertices.tree.at_load_points
-        return Edge(*map(at, (edges.coordinate, edges.conjugate, edges.shear)))
 
     @cached_property
     def regime_codes(self) -> Indices:

@@ -57,11 +57,9 @@ def swept(tree: VertexTree) -> Array:
     count, (top, load_points) = tree.top.size, tree.start
     tops = np.append(top, tree.top)[:count]
     before = np.hstack([load_points, tree.path])[:, :count].copy()
-    room = 2 * (count + tree.parent.size)
-    while True:
-        found = np.empty((_NUMBERS, room))
-        front = kernel.SlipFront(found)
-        made = front.run(tree.parent, tree.vertices, tops, before, tree.path)
-        if made <= room:
-            return found[:, :made]
-        room = made
+    steps = tree.parent, tree.vertices, tops, before, tree.path
+    # A sweep without room counts the pieces.
+    made = kernel.SlipFront(np.empty((_NUMBERS, 0))).run(*steps)
+    pieces = np.empty((_NUMBERS, made))
+    kernel.SlipFront(pieces).run(*steps)
+    return pieces

@@ -25,7 +25,12 @@ from mdr_core.history.slip_memory import Polylines
 from mdr_core.history.tractions import REGIMES
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices
-from mdr_core.validation import require_finite, require_not_negative, require_whole
+from mdr_core.validation import (
+    common_shape,
+    require_finite,
+    require_not_negative,
+    require_whole,
+)
 
 # Attributes that define a table in place of parameters.
 _TABLE: Final = ("r", "values", "breaks", "uncertainty")
@@ -249,12 +254,8 @@ def build(
         raise InputError(("history", "samples_per_step"), "must be at least 1")
     normal_points = _checked("normal", *normal)
     tangential_points = _checked("tangential", *tangential)
-    sizes = normal_points.size, tangential_points.size
-    if sizes[0] != sizes[1] and 1 not in sizes:
-        raise InputError(
-            ("history", "tangential", tangential[0]),
-            f"{sizes[1]} values do not match {sizes[0]} values of {normal[0]}: give one or as many",
-        )
+    place = "history", "tangential", tangential[0]
+    common_shape(place, tangential_points, normal[0], normal_points)
     loads = np.array(np.broadcast_arrays(normal_points, tangential_points))
     points = np.column_stack([(begin.normal, begin.tangential), loads])
     return SampledPath(start, (normal[0], tangential[0]), points, samples_per_step, begin)

@@ -66,20 +66,6 @@ class VertexTree:
         """Length of the segment below each vertex (normal coordinate); arbitrary on the axis."""
         return np.maximum(self.normal - self.normal[self.parent], 0.0)
 
-    @property
-    def on_face(self) -> Flags:
-        """True where the springs of the segment below a vertex are at their friction limit."""
-        return np.asarray(np.abs(self.slope) == 1)
-
-    @property
-    def last(self) -> Indices:
-        """Vertices of the last polyline, from the axis."""
-        chain, vertex = [], int(self.top[-1])
-        while vertex >= 0:
-            chain.append(vertex)
-            vertex = int(self.parent[vertex])
-        return np.array(chain[::-1], dtype=np.intp)
-
     def at_load_points(self, values: Array) -> Array:
         """Return the values of the vertices of the load points, zero in separation."""
         return np.append(values, 0.0)[self.top]

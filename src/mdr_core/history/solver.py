@@ -174,17 +174,17 @@ class LoadHistory(validity.ResultsOverLoads):
         return np.concatenate([result(vertices) for vertices, _ in self._blocks])
 
     @cached_property
-    def _end(self) -> _Block:
-        """Last vertices, with the polyline after all steps."""
-        return deque(self._blocks, maxlen=1)[0]
+    def _after(self) -> Polylines:
+        """Slip memory at the end."""
+        return deque(self._blocks, maxlen=1)[0][1]
 
     @cached_property
     def state(self) -> ContactState:
         """State of the contact at the end of the history."""
-        vertices, line = self._end
+        line = self._after
         if self.path.over_forces and len(line.vertices):
-            above = vertices.tree.last[1:]
-            line = slip_memory.stacked(vertices.conjugate_step[above], vertices.tree.slope[above])
+            vertices = TractionVertices(self.path.moments, line.tree(line.load_points))
+            line = slip_memory.stacked(vertices.conjugate_step[1:], vertices.tree.slope[1:])
         return replace(self.path.start, polyline=line, before=line)
 
     @property
@@ -197,7 +197,7 @@ class LoadHistory(validity.ResultsOverLoads):
             tangential,
             float(self.dissipated_energy[-1]),
             str(self.regime[-1]),
-            self._end[1].vertices[:-1, :NORMAL].tolist(),
+            self._after.vertices[:-1, :NORMAL].tolist(),
         )._asdict()
 
     @property
@@ -216,7 +216,7 @@ class LoadHistory(validity.ResultsOverLoads):
         of_sums = (conditioning.OF_SUMS + self._condition_number) * self.normal.error_estimate
         return of_sums + self.rounding
 
-    @property
+    @cached_property
     def rounding(self) -> float:
         """Relative rounding error of steps of the tangential load and of the slip front [1].
 

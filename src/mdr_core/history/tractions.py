@@ -132,8 +132,9 @@ def variance_growth(
 def regime_codes(vertices: TractionVertices) -> Indices:
     """Return the index in `REGIMES` for the springs at their limit: none, the outermost, or all."""
     tree, slips = vertices.tree, 1 if vertices.moments.profile.is_flat_punch else 2
-    full = tree.on_face & (tree.parent[tree.parent] < 0)
-    codes = np.where(full, 3, np.where(tree.on_face, slips, 1))
+    at_limit = np.abs(tree.slope) == 1
+    full = at_limit & (tree.parent[tree.parent] < 0)
+    codes = np.where(full, 3, np.where(at_limit, slips, 1))
     return tree.at_load_points(codes).astype(np.intp)
 
 
