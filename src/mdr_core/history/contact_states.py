@@ -47,15 +47,15 @@ class ContactStates(LoadPointResults):
     def __getitem__(self, index: Any) -> "ContactStates": ...
 
     def __getitem__(self, index: Any) -> "ContactState | ContactStates":
-        chosen = np.arange(len(self))[index]
+        chosen: Any = np.arange(len(self))[index]
         rows = np.ravel(chosen)
-        at: Any = rows if chosen.ndim else int(chosen)
+        at = rows if chosen.ndim else chosen
         swept = {name: self.profile.parameters[name][at] for name in self.profile.swept}
         profile = self.profile.with_parameters(swept)
         moduli = (getattr(self, name) for name in self.moduli)
         e_star, g_star, friction = (each[at] if np.ndim(each) else each for each in moduli)
         given = profile, e_star, g_star, friction, self.polyline.at(rows), self.before.at(rows)
-        if isinstance(index, int | np.integer):
+        if not chosen.ndim:
             return ContactState(*given)
         return ContactStates(*given, self.regime_before[rows])
 

@@ -7,9 +7,10 @@ Source: mindlin-deresiewicz; notes, §15.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import product
 from math import inf
-from typing import Final
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,8 +18,7 @@ from numpy.typing import ArrayLike
 from mdr_core import residuals, tangential
 from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
-from mdr_core.estimation import Precision, minimum, require_fitted
-from mdr_core.hysteresis.result import PARAMETERS, LoopFit
+from mdr_core.estimation import LeastSquaresFit, Precision, minimum, require_fitted
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
@@ -30,6 +30,11 @@ from mdr_core.validation import (
     single,
 )
 
+PARAMETERS: Final = (
+    *("g_star", "friction_coefficient", "force_offset", "rig_compliance"),
+    "displacement_offset",
+)
+"""Quantities that can be fitted."""
 # Amplitudes that are tried first, over that of full slip; parts of the latter in the rig; points of
 # first loading between which the forces are interpolated for this.
 _TRIED, _IN_RIG, _POINTS = np.geomspace(0.01, 30.0, 40), np.linspace(0.0, 0.96, 25), 200
@@ -53,6 +58,63 @@ _CAUSES: Final = {
     "correlated_noise": "the forces drift, or neighbouring errors are alike",
 }
 _CODES: Final = {"two_branches": "misfit", "drift": "correlated_noise"}
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class LoopFit(LeastSquaresFit):
+    """Fitted parameters of a loop with their standard errors."""
+
+    turning: TangentialContact
+    """Contact at the turning points of the loop, as on first loading."""
+    force_offset: float
+    """F_0, the force in the middle of the loop [force]."""
+    displacement_offset: float
+    """U_0, the displacement in the middle of the loop [length]."""
+    rig_compliance: float
+    """C, as given or fitted [length/force]."""
+    tangential_displacement: Array
+    """Measured displacements [length], shape (k,)."""
+    tangential_force: Array
+    """Fitted forces [force], shape (k,)."""
+    dissipated_energy_error: float
+    """Standard deviation of `dissipated_energy`, by those of the parameters [force length]."""
+    quantities: ClassVar[tuple[str, ...]] = (
+        *("fit", "g_star", "friction_coefficient", "force_offset", "rig_compliance"),
+        "displacement_offset",
+        *("standard_errors", "correlation", "noise", "misfit"),
+        *("dissipated_energy", "dissipated_energy_error"),
+        *("tangential_displacement", "tangential_force", "residual"),
+    )
+
+    @property
+    def solved(self) -> TangentialContact:
+        """Contact on which the validity depends."""
+        return self.turning
+
+    @property
+    def normal(self) -> NormalContact:
+        """Contact under the normal load."""
+        return self.turning.normal
+
+    @property
+    def g_star(self) -> float:
+        """Effective shear modulus G* [pressure]."""
+        return float(self.turning.g_star)
+
+    @property
+    def friction_coefficient(self) -> float:
+        """mu [1]."""
+        return float(self.turning.friction_coefficient)
+
+    @property
+    def dissipated_energy(self) -> float:
+        """Energy of a cycle, four times that dissipated on first loading [force length]."""
+        return 4 * float(self.turning.dissipated_energy)
+
+    @property
+    def warnings_without_bodies(self) -> tuple[Notice, ...]:
+        """Warnings that do not depend on the bodies."""
+        return *self.turning.warnings_without_bodies, *self.notices
 
 
 def solve(
