@@ -14,10 +14,8 @@ from numpy.typing import ArrayLike
 from mdr_core import history, normal, validity
 from mdr_core.elementwise import full, number
 from mdr_core.errors import AccuracyError, InputError, Notice
-from mdr_core.history import ContactState, slip_memory
-from mdr_core.history.slip_memory import LoadPoints
-from mdr_core.history.step_results import REGIMES, StepResults
-from mdr_core.interval_moments import interval_moments
+from mdr_core.history import ContactState, LoadHistory
+from mdr_core.history.load_path import SampledPath
 from mdr_core.inversion import invert
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
@@ -25,10 +23,11 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array
 from mdr_core.validation import (
-    FINITE,
     POSITIVE,
     as_numbers,
+    common_shape,
     reject,
+    require_finite,
     require_inside,
     require_single_positive,
     require_tolerance,
@@ -125,12 +124,12 @@ class Impact(validity.ContactResults):
 
 
 class _Motion(NamedTuple):
-    """Samples of the normal motion after first contact, the last one at separation."""
+    """Samples of the normal motion from first contact to separation."""
 
     depth: Array
-    """Indentation depths [length]."""
+    """Indentation depths, from zero to zero [length]."""
     force: Array
-    """F_N/E* [length^2]."""
+    """F_N/E* after first contact [length^2]."""
     step: Array
     """Times since the sample before [time]."""
     impulse: Array
@@ -240,20 +239,14 @@ def _velocities(normal_velocity: ArrayLike, tangential_velocity: ArrayLike) -> t
     """Return the velocities in their common shape; raise InputError if they are invalid."""
     speeds = as_numbers(("normal_velocity",), normal_velocity)
     along = as_numbers(("tangential_velocity",), tangential_velocity)
-    approaches = (speeds > 0) & np.isfinite(speeds)
-    for name, values, good, detail in (
-        ("normal_velocity", speeds, approaches, f"{POSITIVE} and finite: approach is positive"),
-        ("tangential_velocity", along, np.isfinite(along), FINITE),
-    ):
+    for name, values in (("normal_velocity", speeds), ("tangential_velocity", along)):
         if not values.size:
             raise InputError((name,), "at least one value is needed")
-        reject((name,), values, ~good, detail)
-    try:
-        return np.broadcast_arrays(speeds, along)
-    except ValueError:
-        shapes = f"has the shape {along.shape}, but normal_velocity {speeds.shape}"
-        detail = f"{shapes}: give one, or as many"
-        raise InputError(("tangential_velocity",), detail) from None
+    detail = f"{POSITIVE} and finite: approach is positive"
+    reject(("normal_velocity",), speeds, ~((speeds > 0) & np.isfinite(speeds)), detail)
+    require_finite(("tangential_velocity",), along)
+    common_shape(("tangential_velocity",), along, "normal_velocity", speeds)
+    return np.broadcast_arrays(speeds, along)
 
 
 def _largest_coordinates(profile: Profile, energy: Array) -> Array:
@@ -339,7 +332,7 @@ def _motion(scene: _Scene, count: int) -> _Motion:
     depth, force = (np.append(each, each[-2::-1]) for each in (depth, force))
     speed, step = np.append(speed, -speed[-2::-1]), np.append(step, step[::-1])
     lag = mass * (speed[:-1] * step - np.diff(depth))
-    return _Motion(depth[1:], force[1:], step, -mass * np.diff(speed), lag)
+    return _Motion(depth, force[1:], step, -mass * np.diff(speed), lag)
 
 
 def _rebound(scene: _Scene, motion: _Motion, guess: Array) -> tuple[Array, bool, Array] | None:
@@ -357,25 +350,23 @@ def _rebound(scene: _Scene, motion: _Motion, guess: Array) -> tuple[Array, bool,
         (2, n); n = 1 means free motion.
     """
     start, mass, velocity = scene.start, scene.tangential_mass, scene.tangential_velocity
-    step, time = motion.step, np.cumsum(motion.step)
+    step, time = motion.step, np.append(0.0, np.cumsum(motion.step))
     u = np.interp(time, *guess) if guess.shape[1] > 1 else velocity * time
-    moments = interval_moments(start.profile, over_forces=False)
-    apart, straight_on = slip_memory.separated(0.0, 0.0), np.zeros(u.shape, dtype=bool)
     for _ in range(_SWEEPS):
-        points = LoadPoints(motion.depth, u / start.displacement_ratio, straight_on)
-        path = StepResults(moments, points, apart, "no_contact")
-        ratio = start.friction_coefficient * path.shear[:-1] / motion.force[:-1]
+        loads = np.array([motion.depth, u])
+        path = SampledPath(start, ("indentation_depth", "tangential_displacement"), loads)
+        course = LoadHistory(path, start.e_star, start.polyline)
+        ratio = course.tangential_force[:-1] / (start.e_star * motion.force[:-1])
         ratio = np.concatenate([ratio[:1], ratio, ratio[-1:]])
         low, high = ratio[:-1], ratio[1:]
         impulse = np.cumsum(motion.impulse * (low + high) / 2)
         before = velocity - np.append(0.0, impulse[:-1]) / mass
         moved = step * before - motion.lag * (2 * low + high) / (3 * mass)
-        last, u = u, np.cumsum(moved)
+        last, u = u, np.append(0.0, np.cumsum(moved))
         if np.abs(u - last).max() <= _CONVERGED * np.abs(u).max():
             break
     else:
         return None
-    slides = bool(np.all(path.regime[:-1] == REGIMES.index("full_slip")))
-    dissipated = start.energy_unit * path.dissipation.sum()
+    slides, dissipated = np.all(course.regime[:-1] == "full_slip"), course.dissipation.sum()
     results = np.array([velocity - impulse[-1] / mass, time[-1], impulse[-1], dissipated])
-    return results, slides, np.array([np.append(0.0, time), np.append(0.0, u)])
+    return results, bool(slides), np.array([time, u])

@@ -8,17 +8,30 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import conditioning, equivalent_1d, materials, stick_zone, validity
+from mdr_core import conditioning, equivalent_1d, materials, validity
 from mdr_core.doubles import EPS, ROUNDING
-from mdr_core.elementwise import broadcast, is_number, some, where
+from mdr_core.elementwise import broadcast, number, some, where
 from mdr_core.extrema import largest_stress
 from mdr_core.interval_moments import interval_moments
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
-from mdr_core.stick_zone import CONTROLS
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validation import as_positive, common_shape, only_one, require_type
+from mdr_core.validation import (
+    as_positive,
+    common_shape,
+    only_one,
+    reject,
+    require_finite,
+    require_type,
+)
+
+CONTROLS: Final = {
+    "tangential_force": "normal_force",
+    "tangential_displacement": "indentation_depth",
+    "stick_radius": "contact_radius",
+}
+"""Tangential loads, and the quantities of the normal contact that limit them."""
 
 # Relative rounding error of the full-slip displacement mu (E*/G*) d, which has three products.
 _LIMIT_ERROR: Final = 1.5 * EPS
@@ -45,11 +58,11 @@ class TangentialContact(validity.ResultsOverLoads):
     width: Array
     """Distance of the stick edge from the contact edge in that coordinate, free of cancellation."""
     sign: Array
-    """Direction of the load; a single 1 if all loads are positive."""
+    """Direction of the load, 1 or -1."""
     full_slip: Flags
-    """True in full slip; a single False if no case is in full slip."""
+    """True in full slip."""
     excess: Array
-    """Displacement beyond the onset of full slip [length]; a single 0 if there is none."""
+    """Displacement beyond the onset of full slip [length]."""
     control: str = "tangential_displacement"
     """Name of the prescribed tangential load."""
     quantities: ClassVar[tuple[str, ...]] = (
@@ -87,17 +100,14 @@ class TangentialContact(validity.ResultsOverLoads):
     def tangential_force(self) -> Array:
         """F_x = mu [F_N(a) - F_N(c)] [force]. Source: mdr-5, Eq. (5.19)."""
         partial = self._over_annulus(equivalent_1d.force_step, 1.0)
-        if some(self.full_slip):
-            partial = where(self.full_slip, self.limiting_force, partial)
-        return self._signed(partial)
+        return self.sign * where(self.full_slip, self.limiting_force, partial)
 
     @cached_property
     def tangential_displacement(self) -> Array:
         """u_x = mu (E*/G*) [d(a) - d(c)] [length]. Source: mdr-5, Eqs. (5.20), (5.33)."""
         partial = self._over_annulus(equivalent_1d.depth_step, self.g_star)
-        if some(self.full_slip):
-            partial = where(self.full_slip, self._full_slip_displacement, partial) + self.excess
-        return self._signed(partial)
+        slid = self._full_slip_displacement + self.excess
+        return self.sign * where(self.full_slip, slid, partial)
 
     def _over_annulus(self, step: _Step, divisor: Parameter) -> Array:
         """Step of depth or force over the annulus, times mu E*/divisor."""
@@ -105,9 +115,6 @@ class TangentialContact(validity.ResultsOverLoads):
         rise = step(self.normal.profile, *ends)
         # mu and G* are often single numbers while E* is an array.
         return self.friction_coefficient / divisor * self.normal.e_star * rise
-
-    def _signed(self, size: Array) -> Array:
-        return size if is_number(self.sign) and self.sign > 0 else self.sign * size
 
     @cached_property
     def _full_slip_displacement(self) -> Array:
@@ -129,7 +136,7 @@ class TangentialContact(validity.ResultsOverLoads):
             # Rounding errors may lead to c > a. Without slip c and a are bit-identical.
             a = self.normal.contact_radius
             c = where(self.width > 0, np.minimum(c, a), a)
-        return where(self.full_slip, 0.0, c) if some(self.full_slip) else c
+        return where(self.full_slip, 0.0, c)
 
     @cached_property
     def tangential_stiffness(self) -> Array:
@@ -318,10 +325,15 @@ def solve(
     friction_coefficient = as_positive(("friction_coefficient",), friction_coefficient)
     loads = (tangential_force, tangential_displacement, stick_radius)
     name, given = only_one(("tangential",), dict(zip(CONTROLS, loads, strict=True)))
+    require_finite(("tangential", name), given)
     parameters = (modulus, friction_coefficient)
     others = "the normal loads", contact.coordinate
     shape = common_shape(("tangential", name), given, *others, *parameters)
-    edge, width, sign, full_slip, excess = stick_zone.solve(contact, *parameters, name, given)
+    if name == "stick_radius":
+        zone = _by_radius(contact, given)
+    else:
+        zone = _by_load(contact, *parameters, name, given)
+    edge, width, sign, full_slip, excess = zone
     edge, width = broadcast(edge, shape), broadcast(width, shape)
     result = TangentialContact(
         contact, *parameters, edge, width, sign, full_slip, excess, control=name
@@ -330,6 +342,66 @@ def solve(
         # The prescribed load is returned bit-identical.
         vars(result)[name] = given
     return result
+
+
+# Stick edge, width, sign, full slip and excess: see `TangentialContact`.
+_StickZone = tuple[Array, Array, Array, Flags, Array]
+
+
+def _by_load(
+    contact: NormalContact, g_star: Parameter, friction: Parameter, name: str, given: Array
+) -> _StickZone:
+    """Return the stick zones under forces or displacements.
+
+    Raises InputError for a force without equilibrium. Source: mdr-5, Eqs. (5.18)-(5.23).
+    """
+    of_force = name == "tangential_force"
+    # The load at the onset of full slip.
+    ratio = friction if of_force else friction * contact.e_star / g_star
+    limit = ratio * getattr(contact, CONTROLS[name])
+    sign, size = where(given < 0, -1.0, 1.0), np.abs(given)
+    left = limit - size
+    if of_force:
+        detail = (
+            "no equilibrium: the force exceeds friction_coefficient x normal_force; reduce it, "
+            "or prescribe tangential_displacement"
+        )
+        reject(("tangential", name), size, left < 0, detail)
+    loaded = limit > 0
+    # Without loads there is no slip; without a normal load any displacement is full slip.
+    full_slip = where(loaded, left <= 0, size > 0)
+    excess = np.maximum(-left, 0.0)
+    size, left = np.minimum(size, limit), where(loaded, np.maximum(left, 0.0), 1.0)
+    limit = where(loaded, limit, 1.0)
+    ratios = size / limit, left / limit
+    ends = equivalent_1d.stick_edge(contact.profile, contact.coordinate, *ratios, of_force=of_force)
+    return *ends, sign, full_slip, excess
+
+
+def _by_radius(contact: NormalContact, radius: Array) -> _StickZone:
+    """Return the stick zones of prescribed radii.
+
+    Raises InputError for a radius that the contact does not have.
+    """
+    profile, a = contact.profile, contact.contact_radius
+    innermost = profile.first_radius
+    slip = number(1.0), (radius == 0) & (a > 0), number(0.0)
+    bad = (radius > a) | (radius < 0) | ((radius > 0) & (radius < innermost))
+    detail = "must lie between the flat's radius, or 0, and the contact radius"
+    if profile.is_flat_punch:
+        bad = bad | (radius > 0)
+        detail = "a flat punch has no slip annulus: prescribe tangential_force or another load"
+    reject(("tangential", "stick_radius"), radius, bad, detail)
+    if profile.is_flat_punch:
+        return 0 * radius, contact.coordinate + 0 * radius, *slip
+    c = np.maximum(radius, innermost)
+    edge = profile.coordinate_from_radius(c)
+    if contact.control == "contact_radius":
+        width = a - c
+    else:
+        # The contact coordinate of a computed edge is accurate; its radius may not be.
+        width = where(c < a, np.maximum(contact.coordinate - edge, 0.0), 0.0)
+    return edge, width, *slip
 
 
 def slip_moment(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:

@@ -16,7 +16,7 @@ import pytest
 from mdr_core import equivalent_1d, history, normal, tangential
 from mdr_core.fields import normal as normal_fields
 from mdr_core.fields import tangential as tangential_fields
-from mdr_core.history import slip_memory, step_results
+from mdr_core.history import slip_memory, tractions
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.profiles import KINDS, Paraboloid, Profile, Sphere, SphericalTipCone
 from mdr_core.profiles import base as profiles
@@ -128,9 +128,9 @@ def test_slip_memory_is_followed_once_for_all_results(controls: str) -> None:
     steps: list[int] = []
     follow = slip_memory.follow
 
-    def counted_follow(start: Any, points: Any) -> Any:
-        steps.append(points.normal.size)
-        return follow(start, points)
+    def counted_follow(start: Any, path: Any, continues: Any) -> Any:
+        steps.append(continues.size)
+        return follow(start, path, continues)
 
     path = load_path(controls, 100_000)
     with patch.object(slip_memory, "follow", counted_follow):
@@ -148,8 +148,8 @@ def test_tangential_force_of_a_history_needs_nothing_else(controls: str) -> None
     """Whatever its length: neither slip and energies nor the normal contact of each sample."""
     for steps in (10, 100_000):
         with (
-            patch.object(step_results, "dissipation", never),
-            patch.object(step_results, "variance_growth", never),
+            patch.object(tractions, "dissipation", never),
+            patch.object(tractions, "variance_growth", never),
             patch.object(Sphere, "reduced_energy", never),
             patch.object(IntervalMoments, "over", never),
             patch.object(history.LoadHistory, "normal", property(never)),
@@ -163,8 +163,8 @@ def test_a_step_computes_only_what_is_requested() -> None:
     state = history.unloaded(Sphere(1.5), 3.7, 2.9, 0.37)
     for depth, displacement in ((0.2, 0.01), (0.25, 0.03), (0.22, -0.01), (0.23, 0.02)):
         with (
-            patch.object(step_results, "dissipation", never),
-            patch.object(step_results, "variance_growth", never),
+            patch.object(tractions, "dissipation", never),
+            patch.object(tractions, "variance_growth", never),
             patch.object(Sphere, "reduced_energy", never),
         ):
             with patch.object(equivalent_1d, "invert", never):

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from mdr_core.history import friction_work, slip_kernel, slip_memory
-from mdr_core.history.slip_memory import LoadPoints
 
 TEXT = Path(slip_memory.__file__).with_name("slip_kernel.py")
 
@@ -31,13 +30,10 @@ def test_compiled_kernel_is_bit_identical_to_python(
 ) -> None:
     rng, count = np.random.default_rng(20), 3000
     spread = {"random": (0.3, 0.1), "constant": (0.3, 0.0), "separated": (0.3, 0.4)}[control]
-    points = LoadPoints(
-        rng.normal(*spread, count),
-        np.cumsum(rng.normal(0.0, 0.2, count)),
-        np.arange(count) % 3 > 0,
-    )
-    start = slip_memory.separated(0.0, 0.0)
-    compiled = slip_memory.follow(start, points)
+    points = np.array([rng.normal(*spread, count), np.cumsum(rng.normal(0.0, 0.2, count))])
+    steps = points, np.arange(count) % 3 > 0
+    start = slip_memory.separated(np.zeros((2, 1)))
+    compiled = slip_memory.follow(start, *steps)
     swept = friction_work.swept(compiled[0])
     vertices, path = np.tile(compiled[1].vertices, (9, 1)), rng.normal(0.3, 0.2, (4, 9))
     ends = len(compiled[1].vertices) * np.arange(1, 10)
@@ -50,7 +46,7 @@ def test_compiled_kernel_is_bit_identical_to_python(
     specification.loader.exec_module(plain)
     for module in (slip_memory, friction_work):
         monkeypatch.setattr(module, "kernel", plain)
-    tree, line = slip_memory.follow(start, points)
+    tree, line = slip_memory.follow(start, *steps)
     for name in ("parent", "vertices", "top"):
         np.testing.assert_array_equal(getattr(compiled[0], name), getattr(tree, name), name)
     for one, other in zip(compiled[1], line, strict=True):
@@ -64,8 +60,8 @@ def test_pieces_without_room_are_counted() -> None:
     """No path writes beyond the array, however many segments rounding errors add to the front."""
     rng = np.random.default_rng(21)
     normal, tangential = rng.normal(0.3, 0.1, 200), np.cumsum(rng.normal(0.0, 0.2, 200))
-    points = LoadPoints(normal, tangential, np.zeros(200, dtype=bool))
-    tree, _ = slip_memory.follow(slip_memory.separated(0.0, 0.0), points)
+    steps = np.array([normal, tangential]), np.zeros(200, dtype=bool)
+    tree, _ = slip_memory.follow(slip_memory.separated(np.zeros((2, 1))), *steps)
     before, tops = np.zeros((2, 200)), np.append(-1, tree.top[:-1])
     before[:, 1:] = tree.path[:, :-1]
     counts = [

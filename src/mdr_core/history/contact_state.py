@@ -6,13 +6,15 @@ from itertools import pairwise
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mdr_core.doubles import ROUNDING
 from mdr_core.elementwise import number, where
 from mdr_core.history import slip_memory
+from mdr_core.history.friction_work import dissipation
 from mdr_core.history.slip_layout import NORMAL
-from mdr_core.history.slip_memory import Polyline, VertexTree, read_only
-from mdr_core.history.step_results import SHORT, TractionVertices
+from mdr_core.history.slip_memory import Polylines, read_only
+from mdr_core.history.tractions import SHORT, TractionVertices
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.materials import Material, modulus
 from mdr_core.profiles import Profile
@@ -39,16 +41,22 @@ class Edge(NamedTuple):
     """F_x/(mu E*) [length^2]."""
 
 
+@dataclass(frozen=True, repr=False, eq=False)
 class LoadPointResults(Results):
     """Results of one contact or of many, from the contacts whose edges the load points are."""
 
     profile: Profile
+    """Profile of all contacts; its parameters are numbers, or arrays over the contacts."""
     e_star: Any
+    """E*, of all contacts or of each [pressure]."""
     g_star: Any
+    """G*, of all contacts or of each [pressure]."""
     friction_coefficient: Any
-    in_contact: Any
-    load_points: Any
-    """`Edge` of the load points."""
+    """mu, of all contacts or of each [1]."""
+    polyline: Polylines
+    """Slip memory of each contact, over depths."""
+    before: Polylines
+    """Slip memory before the step that led here; the same one in other states."""
     quantities: ClassVar[tuple[str, ...]] = (
         "indentation_depth",
         "normal_force",
@@ -59,6 +67,42 @@ class LoadPointResults(Results):
         "tangential_energy",
         "dissipation",
     )
+
+    def _of_contacts(self, values: NDArray[Any]) -> Any:
+        """Return the values of all contacts; those of a single state are numbers."""
+        return values
+
+    @cached_property
+    def _moments(self) -> IntervalMoments:
+        """Moments over intervals of depth."""
+        return interval_moments(self.profile, over_forces=False)
+
+    @cached_property
+    def vertices(self) -> TractionVertices:
+        """Vertices of all polylines."""
+        tree = self.polyline.tree(self.polyline.load_points)
+        return TractionVertices(self._moments.part(self.polyline.owners), tree)
+
+    @cached_property
+    def load_points(self) -> Edge:
+        """Contact whose edge the load point of each contact is."""
+        edges, at = self.vertices, self.vertices.tree.at_load_points
+        return Edge(*map(at, (edges.coordinate, edges.conjugate, edges.shear)))
+
+    @property
+    def in_contact(self) -> Any:
+        """True unless the bodies are separated."""
+        return self._of_contacts(self.polyline.sizes > 0)
+
+    @property
+    def indentation_depth(self) -> Any:
+        """d [length]; negative in separation."""
+        return self._of_contacts(self.polyline.load_points[0])
+
+    @property
+    def tangential_displacement(self) -> Any:
+        """u_x [length]."""
+        return self.displacement_ratio * self._of_contacts(self.polyline.load_points[1])
 
     @property
     def displacement_ratio(self) -> Any:
@@ -91,6 +135,18 @@ class LoadPointResults(Results):
         """Energy stored by the normal load, int F_N dd [force length]."""
         return self.e_star * self.profile.reduced_energy(self.load_points.coordinate)
 
+    @property
+    def tangential_energy(self) -> Any:
+        """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length]."""
+        square = self.vertices.tree.at_load_points(self.vertices.square)
+        return self.energy_unit * self._of_contacts(square)
+
+    @cached_property
+    def dissipation(self) -> Any:
+        """Energy dissipated by friction on the step that led here [force length]."""
+        step = self.before.tree(self.polyline.load_points)
+        return self.energy_unit * self._of_contacts(dissipation(self._moments, step))
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ContactState(LoadPointResults):
@@ -101,40 +157,13 @@ class ContactState(LoadPointResults):
     traction and every later step, for every profile. Source: notes, §10.
     """
 
-    profile: Profile
-    e_star: float
-    g_star: float
-    friction_coefficient: float
-    polyline: Polyline
-    """Polyline over depths."""
-    before: Polyline
-    """Polyline before the step of `advance` that led here; the same one in other states."""
     known_edges: list[Edge] = field(init=False, default_factory=list)
     """Edges of the first vertices; a step passes the edges that it keeps to the next state."""
     quantities: ClassVar[tuple[str, ...]] = (*LoadPointResults.quantities, "slip_fronts")
 
-    @property
-    def indentation_depth(self) -> float:
-        """d [length]; negative in separation."""
-        return self.polyline.normal
-
-    @property
-    def tangential_displacement(self) -> float:
-        """u_x [length]."""
-        return self.displacement_ratio * self.polyline.tangential
-
-    @property
-    def in_contact(self) -> bool:
-        """True unless the bodies are separated."""
-        return self.polyline.in_contact
-
-    @cached_property
-    def _moments(self) -> IntervalMoments:
-        return interval_moments(self.profile, over_forces=False)
-
-    @cached_property
-    def _tree(self) -> VertexTree:
-        return slip_memory.as_tree(self.polyline)
+    def _of_contacts(self, values: NDArray[Any]) -> Any:
+        """Return the only one of the values."""
+        return values[0]
 
     @property
     def _edges(self) -> list[Edge]:
@@ -162,13 +191,13 @@ class ContactState(LoadPointResults):
     @property
     def depth(self) -> Array:
         """Depths w of the vertices, from 0 to d [length]; empty in separation."""
-        return self._tree.normal.copy()
+        return self.vertices.tree.normal.copy()
 
     @property
     def load(self) -> Array:
         """q_x of the springs at the vertices [force/length]; linear in w between them."""
         forward, backward = self.polyline.vertices[:, :NORMAL].T
-        anchors = self.polyline.tangential - (forward - backward) / 2
+        anchors = self.polyline.load_points[1] - (forward - backward) / 2
         return self.friction_coefficient * self.e_star * anchors
 
     @cached_property
@@ -179,24 +208,12 @@ class ContactState(LoadPointResults):
     @cached_property
     def slope(self) -> Array:
         """Slope of the anchor over depth below each vertex but the first, from -1 to 1."""
-        return read_only(self._tree.slope[1:])
+        return read_only(self.vertices.tree.slope[1:])
 
-    @property
+    @cached_property
     def load_points(self) -> Edge:
         """Contact whose edge the load point is."""
         return self._edges[-1]
-
-    @property
-    def tangential_energy(self) -> float:
-        """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length]."""
-        vertices = TractionVertices(self._moments, self._tree)
-        return float(self.energy_unit * self._tree.at_load_points(vertices.square)[0])
-
-    @cached_property
-    def dissipation(self) -> float:
-        """Energy dissipated by friction on the step of `advance` that led here [force length]."""
-        vertices = TractionVertices(self._moments, slip_memory.as_tree(self.before, self.polyline))
-        return float(self.energy_unit * vertices.dissipation[-1])
 
     @property
     def slip_fronts(self) -> Array:
@@ -246,7 +263,7 @@ def unloaded(
     require_single_positive(("material", "e_star"), normal)
     require_single_positive(("material", "g_star"), shear)
     require_single_positive(("friction_coefficient",), friction_coefficient)
-    polyline = slip_memory.separated(0.0, 0.0)
+    polyline = slip_memory.separated(np.zeros((2, 1)))
     return ContactState(profile, normal, shear, friction_coefficient, polyline, polyline)
 
 
@@ -295,7 +312,8 @@ def advance(
     profile = state.profile
     beyond = number(depth) > profile.largest_loads[0]
     require_inside(("indentation_depth",), beyond, profile)
-    line, kept = slip_memory.moved(state.polyline, depth, displacement / state.displacement_ratio)
+    load_point = depth, displacement / state.displacement_ratio
+    line, kept = slip_memory.moved(state.polyline, load_point)
     moduli = state.e_star, state.g_star, state.friction_coefficient
     following = ContactState(profile, *moduli, line, state.polyline)
     following.known_edges.extend(state.known_edges[:kept])

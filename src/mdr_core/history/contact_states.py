@@ -10,15 +10,12 @@ from numpy.typing import ArrayLike
 
 from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
-from mdr_core.history.contact_state import ContactState, Edge, LoadPointResults
-from mdr_core.history.friction_work import dissipation
-from mdr_core.history.slip_layout import COLUMNS
-from mdr_core.history.slip_memory import Polylines, read_only
-from mdr_core.history.step_results import REGIMES, TractionVertices, decides_regime, regime_codes
-from mdr_core.interval_moments import IntervalMoments, interval_moments
+from mdr_core.history.contact_state import ContactState, LoadPointResults
+from mdr_core.history.slip_memory import read_only
+from mdr_core.history.tractions import REGIMES, decides_regime, regime_codes
 from mdr_core.materials import Material, modulus
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array, Flags, Indices, Parameter
+from mdr_core.typing import Array, Indices, Parameter
 from mdr_core.validation import (
     as_numbers,
     as_positive,
@@ -35,25 +32,13 @@ class ContactStates(LoadPointResults):
     `states[i]` is one of them as a `ContactState`; a mask, a slice or indices choose several.
     """
 
-    profile: Profile
-    """Profile of all contacts; its parameters are numbers, or arrays over the contacts."""
-    e_star: Parameter
-    """E*, of all contacts or of each [pressure]."""
-    g_star: Parameter
-    """G*, likewise."""
-    friction_coefficient: Parameter
-    """mu, likewise [1]."""
-    polylines: Polylines
-    """Slip memory of each contact."""
-    before: Polylines
-    """Slip memory before the step that led here."""
     regime_before: Indices
     """Index of the slip regime in `REGIMES` before that step."""
     quantities: ClassVar[tuple[str, ...]] = (*LoadPointResults.quantities, "regime")
     moduli: ClassVar[tuple[str, ...]] = ("e_star", "g_star", "friction_coefficient")
 
     def __len__(self) -> int:
-        return self.polylines.ends.size
+        return self.polyline.ends.size
 
     @overload
     def __getitem__(self, index: int) -> ContactState: ...
@@ -62,69 +47,22 @@ class ContactStates(LoadPointResults):
     def __getitem__(self, index: Any) -> "ContactStates": ...
 
     def __getitem__(self, index: Any) -> "ContactState | ContactStates":
-        one = isinstance(index, int | np.integer)
-        at: Any = range(len(self))[index] if one else np.arange(len(self))[index].ravel()
+        chosen: Any = np.arange(len(self))[index]
+        rows = np.ravel(chosen)
+        at = rows if chosen.ndim else chosen
         swept = {name: self.profile.parameters[name][at] for name in self.profile.swept}
-        given: dict[str, Any] = {"profile": self.profile.with_parameters(swept)}
-        for name in self.moduli:
-            value = getattr(self, name)
-            given[name] = value[at] if np.ndim(value) else value
-        if one:
-            line, before = self.polylines.line(at), self.before.line(at)
-            return ContactState(polyline=line, before=before, **given)
-        given["polylines"], given["before"] = self.polylines.at(at), self.before.at(at)
-        return ContactStates(regime_before=self.regime_before[at], **given)
-
-    @property
-    def _moments(self) -> IntervalMoments:
-        return interval_moments(self.profile, over_forces=False)
-
-    @cached_property
-    def _edges(self) -> TractionVertices:
-        owner = np.repeat(np.arange(len(self)), self.polylines.sizes)
-        tree = self.polylines.tree(self.polylines.load_points)
-        return TractionVertices(self._moments.part(owner), tree)
-
-    def _of_contacts(self, values: Array) -> Array:
-        """Return the values of the vertices at the edges of the contacts, zero in separation."""
-        return self._edges.tree.at_load_points(values)
-
-    @property
-    def indentation_depth(self) -> Array:
-        """d [length]; negative in separation."""
-        return self.polylines.load_points[0].copy()
-
-    @property
-    def tangential_displacement(self) -> Array:
-        """u_x [length]."""
-        return self.displacement_ratio * self.polylines.load_points[1]
-
-    @property
-    def in_contact(self) -> Flags:
-        """True for contacts that are not separated."""
-        return self.polylines.sizes > 0
-
-    @cached_property
-    def load_points(self) -> Edge:
-        """Contact whose edge the load point of each contact is."""
-        edges = self._edges
-        return Edge(*map(self._of_contacts, (edges.coordinate, edges.conjugate, edges.shear)))
-
-    @property
-    def tangential_energy(self) -> Array:
-        """Energy stored by the tangential load [force length]."""
-        return self.energy_unit * self._of_contacts(self._edges.square)
-
-    @cached_property
-    def dissipation(self) -> Array:
-        """Energy dissipated by friction on the step that led here [force length]."""
-        step = self.before.tree(self.polylines.load_points)
-        return self.energy_unit * dissipation(self._moments, step)
+        profile = self.profile.with_parameters(swept)
+        moduli = (getattr(self, name) for name in self.moduli)
+        e_star, g_star, friction = (each[at] if np.ndim(each) else each for each in moduli)
+        given = profile, e_star, g_star, friction, self.polyline.at(rows), self.before.at(rows)
+        if not chosen.ndim:
+            return ContactState(*given)
+        return ContactStates(*given, self.regime_before[rows])
 
     @cached_property
     def regime_codes(self) -> Indices:
         """Index of the slip regime in `REGIMES`."""
-        codes, after = regime_codes(self._edges), self.polylines.load_points
+        codes, after = regime_codes(self.vertices), self.polyline.load_points
         known = decides_regime(codes, after[0], *(after - self.before.load_points))
         return np.where(known, codes, np.maximum(self.regime_before, codes > 0))
 
@@ -173,13 +111,11 @@ def unloaded_many(
         ("friction_coefficient",): friction_coefficient,
     }
     given |= {("profile", name): profile.parameters[name] for name in profile.swept}
-    values, count = _per_contact(given)
+    (normal, shear, friction, *_), count = _per_contact(given)
     for path, value in given.items():
         as_positive(path, value)
-    none = np.zeros(count, dtype=np.intp)
-    lines = Polylines(read_only(np.zeros((0, COLUMNS))), none, np.zeros((2, count)))
-    e_star, g_star, friction, *_ = values
-    return ContactStates(profile, e_star, g_star, friction, lines, lines, none)
+    lines = slip_memory.separated(np.zeros((2, count)))
+    return ContactStates(profile, normal, shear, friction, lines, lines, lines.ends)
 
 
 def advance_many(
@@ -234,8 +170,8 @@ def advance_many(
     require_inside(("indentation_depth",), loads[0] > profile.largest_loads[0], profile)
     after = np.empty((2, count))
     after[0], after[1] = loads[0], loads[1] / states.displacement_ratio
-    lines, codes = slip_memory.moved_each(states.polylines, after), states.regime_codes
-    return replace(states, polylines=lines, before=states.polylines, regime_before=codes)
+    lines, codes = slip_memory.moved_each(states.polyline, read_only(after)), states.regime_codes
+    return replace(states, polyline=lines, before=states.polyline, regime_before=codes)
 
 
 def join(*states: ContactState | ContactStates) -> ContactStates:
@@ -269,7 +205,7 @@ def join(*states: ContactState | ContactStates) -> ContactStates:
     moduli = [{name: getattr(each, name) for name in ContactStates.moduli} for each in many]
     return ContactStates(
         profile=profile,
-        polylines=slip_memory.joined([each.polylines for each in many]),
+        polyline=slip_memory.joined([each.polyline for each in many]),
         before=slip_memory.joined([each.before for each in many]),
         regime_before=np.concatenate([each.regime_before for each in many]),
         **_joined(moduli, sizes),
@@ -302,11 +238,7 @@ def _per_contact(
 
 def _repeated(state: ContactState, count: int) -> ContactStates:
     """Return copies of one state for several contacts."""
-    vertices, *load_point = state.polyline
-    ends = len(vertices) * np.arange(1, count + 1)
-    load_points = np.tile(load_point, (count, 1)).T
-    lines = Polylines(read_only(np.tile(vertices, (count, 1))), ends, load_points)
-    moduli = state.e_star, state.g_star, state.friction_coefficient
-    moments = interval_moments(state.profile, over_forces=False)
-    codes = regime_codes(TractionVertices(moments, lines.tree(load_points)))
-    return ContactStates(state.profile, *moduli, lines, lines, codes)
+    lines = state.polyline.at(np.zeros(count, dtype=np.intp))
+    moduli = {name: getattr(state, name) for name in ContactStates.moduli}
+    codes = np.repeat(regime_codes(state.vertices), count)
+    return ContactStates(state.profile, **moduli, polyline=lines, before=lines, regime_before=codes)

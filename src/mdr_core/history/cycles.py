@@ -121,9 +121,10 @@ def cycles(
     loads: dict[str, Any] = {normal: mean + amplitude * phase, tangential: points}
     contact = profile, e_star, g_star, friction_coefficient
     history = solve(*contact, **loads, samples_per_step=samples_per_step)
-    if history.rounding > UNRESOLVED:
+    found = LoadCycles(history.path, e_star, history.before, count)
+    if found.rounding > UNRESOLVED:
         detail = (
             "the tangential load is lost in the rounding errors of the normal load: increase it"
         )
         raise AccuracyError(detail, ("cycles", "tangential"))
-    return LoadCycles(history.path, e_star, history.results, count)
+    return found

@@ -54,14 +54,12 @@ def _work(moments: IntervalMoments, pieces: Array) -> Array:
 
 def swept(tree: VertexTree) -> Array:
     """Return the pieces that the slip front sweeps on every step, see `slip_kernel.SlipFront`."""
-    count = tree.top.size
-    starts = zip(tree.start, (tree.top, *tree.path), strict=True)
-    tops, *before = (np.append(np.asarray(first), later)[:count] for first, later in starts)
-    room = 2 * (count + tree.parent.size)
-    while True:
-        found = np.empty((_NUMBERS, room))
-        front = kernel.SlipFront(found)
-        made = front.run(tree.parent, tree.vertices, tops, np.array(before), tree.path)
-        if made <= room:
-            return found[:, :made]
-        room = made
+    count, (top, load_points) = tree.top.size, tree.start
+    tops = np.append(top, tree.top)[:count]
+    before = np.hstack([load_points, tree.path])[:, :count].copy()
+    steps = tree.parent, tree.vertices, tops, before, tree.path
+    # A sweep without room counts the pieces.
+    made = kernel.SlipFront(np.empty((_NUMBERS, 0))).run(*steps)
+    pieces = np.empty((_NUMBERS, made))
+    kernel.SlipFront(pieces).run(*steps)
+    return pieces

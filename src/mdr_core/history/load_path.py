@@ -21,11 +21,16 @@ from mdr_core.errors import InputError
 from mdr_core.history import slip_memory
 from mdr_core.history.contact_state import ContactState
 from mdr_core.history.slip_layout import NORMAL
-from mdr_core.history.slip_memory import LoadPoints, Polyline
-from mdr_core.history.step_results import REGIMES
+from mdr_core.history.slip_memory import Polylines
+from mdr_core.history.tractions import REGIMES
 from mdr_core.interval_moments import IntervalMoments, interval_moments
 from mdr_core.typing import Array, Flags, Indices
-from mdr_core.validation import require_finite, require_not_negative, require_whole
+from mdr_core.validation import (
+    common_shape,
+    require_finite,
+    require_not_negative,
+    require_whole,
+)
 
 # Attributes that define a table in place of parameters.
 _TABLE: Final = ("r", "values", "breaks", "uncertainty")
@@ -65,17 +70,17 @@ class SavedState(NamedTuple):
             raise InputError(("initial_state", "contact"), f"{detail}: repeat all four")
         return cls(**given)
 
-    def restored(self, normal: float, tangential: float) -> Polyline:
+    def restored(self, load_point: Array) -> Polylines:
         """Return the polyline up to the load point.
 
         Raises InputError if the polyline is impossible, because friction limits its slope.
         """
-        place = "initial_state", "polyline"
+        place, normal = ("initial_state", "polyline"), float(load_point[0])
         if {not self.polyline, self.regime == "no_contact"} != {normal <= 0}:
             raise InputError(place, "must be empty, and the regime no_contact, only in separation")
         if normal <= 0:
-            return slip_memory.separated(normal, tangential)
-        line = slip_memory.through(np.array(self.polyline), normal, tangential)
+            return slip_memory.separated(load_point[:, None])
+        line = slip_memory.through(np.array(self.polyline), load_point)
         growth = np.diff(line.vertices[:, :NORMAL], axis=0)
         # Rounding errors may let a sum decrease along a polyline.
         good = (growth.min(axis=1) >= -ROUNDING * normal) & (growth.max(axis=1) > 0)
@@ -92,59 +97,51 @@ UNLOADED: Final = SavedState("", 0.0, 0.0, 0.0, "no_contact", ())
 
 @dataclass(frozen=True)
 class SampledPath:
-    """Points and samples of a load history, in the quantities that are prescribed."""
+    """Points and samples of a load history, in the quantities that are prescribed.
+
+    Rows of two are those of the normal and of the tangential load.
+    """
 
     start: ContactState
     """The unloaded contact."""
-    normal_name: str
-    tangential_name: str
-    normal_points: Array
-    """Depth or normal force at the start and at each point, shape (m + 1,)."""
-    tangential_points: Array
-    """Displacement or tangential force at the start and at each point, shape (m + 1,)."""
-    per_step: int
+    controls: tuple[str, str]
+    """Names of the prescribed loads."""
+    points: Array
+    """Loads at the start and at each point, shape (2, m + 1)."""
+    per_step: int = 1
     """Samples on each load step, the last of which is its point; n = m per_step in total."""
-    begin: SavedState
+    begin: SavedState = UNLOADED
     """State at the start."""
 
     @cached_property
-    def normal_loads(self) -> Array:
-        """Depth or normal force at the start and at each sample, shape (n + 1,)."""
-        return _along(self.normal_points, self.per_step)
-
-    @cached_property
-    def tangential_loads(self) -> Array:
-        """Displacement or tangential force at the start and at each sample, shape (n + 1,)."""
-        loads, n = _along(self.tangential_points, self.per_step), self.per_step
-        if self.starts_straight and self.normal_points[1] > 0:
-            normal = self.normal_coordinate[1 : n + 1]
-            loads[1 : n + 1] = loads[n] * (normal / normal[-1])
-        return loads
-
-    @property
-    def normal(self) -> Array:
-        """Depth or normal force at each sample, shape (n,)."""
-        return self.normal_loads[1:]
-
-    @property
-    def tangential(self) -> Array:
-        """Displacement or tangential force at each sample, shape (n,)."""
-        return self.tangential_loads[1:]
+    def loads(self) -> Array:
+        """Loads at the start and at each sample, shape (2, n + 1)."""
+        count, start, stop = self.per_step, self.points[:, :-1, None], self.points[:, 1:, None]
+        if count == 1:
+            return self.points
+        share = np.arange(1, count + 1)
+        # Proportional forces stay proportional to rounding error, even where they approach zero.
+        samples = start * ((count - share) / count) + stop * (share / count)
+        samples = np.where(start == stop, stop, samples).reshape(2, -1)
+        if self.starts_straight and samples[0, count - 1] > 0:
+            normal = self._normal_coordinate(samples[0, :count])
+            samples[1, :count] = samples[1, count - 1] * (normal / normal[-1])
+        return np.hstack([self.points[:, :1], samples])
 
     @cached_property
     def step(self) -> Indices:
         """Load step of each sample: the index of the given point that it ends at."""
-        return np.repeat(np.arange(self.normal_points.size - 1), self.per_step)
+        return np.repeat(np.arange(self.points.shape[1] - 1), self.per_step)
 
     @property
     def over_forces(self) -> bool:
         """True if normal coordinates are reduced forces: the tangential force is prescribed."""
-        return self.tangential_name == "tangential_force"
+        return self.controls[1] == "tangential_force"
 
     @property
     def depth_prescribed(self) -> bool:
         """True if the depth is prescribed, false for the normal force."""
-        return self.normal_name == "indentation_depth"
+        return self.controls[0] == "indentation_depth"
 
     @property
     def mixed(self) -> bool:
@@ -157,14 +154,12 @@ class SampledPath:
         return self.mixed and self.per_step > 1 and self.begin is UNLOADED
 
     @property
-    def _continues(self) -> Flags:
+    def continues(self) -> Flags:
         """True for samples that continue the straight line to the sample before, shape (n,)."""
-        flags = np.ones((self.normal_points.size - 1, self.per_step), dtype=bool)
+        flags = np.ones((self.points.shape[1] - 1, self.per_step), dtype=bool)
         flags[:, 0] = False
         if self.mixed:
-            points = self.normal_points, self.tangential_points
-            one, other = (np.diff(each) == 0 for each in points)
-            straight = one | other
+            straight = (np.diff(self.points) == 0).any(axis=0)
             straight[0] |= self.starts_straight
             flags &= straight[:, None]
         return flags.ravel()
@@ -174,10 +169,8 @@ class SampledPath:
         """Moments over intervals of the normal coordinate."""
         return interval_moments(self.start.profile, over_forces=self.over_forces)
 
-    @cached_property
-    def normal_coordinate(self) -> Array:
-        """Depth or reduced force at the start and at each sample, <= 0 in separation."""
-        loads = self.normal_loads
+    def _normal_coordinate(self, loads: Array) -> Array:
+        """Return the depths or reduced forces of normal loads, <= 0 in separation."""
         if not self.depth_prescribed:
             loads = loads / self.start.e_star
         if not self.mixed:
@@ -189,12 +182,6 @@ class SampledPath:
         s = self.start.profile.coordinate_from_load(load, of_force=of_force)
         return np.where(loads > 0, self.moments.normal(s)[index], np.minimum(loads, 0.0))
 
-    @property
-    def load_points(self) -> LoadPoints:
-        """One straight step to each sample, in normal coordinates and reduced tangential loads."""
-        normal, tangential = self.coordinates[:, 1:]
-        return LoadPoints(normal, tangential, self._continues)
-
     @cached_property
     def coordinates(self) -> Array:
         """Normal and tangential coordinate at the start and at each sample, shape (2, n + 1).
@@ -203,7 +190,7 @@ class SampledPath:
         """
         scale = self.start.friction_coefficient * self.start.e_star
         scale /= 1.0 if self.over_forces else self.start.g_star
-        normal, tangential = self.normal_coordinate, self.tangential_loads / scale
+        normal, tangential = self._normal_coordinate(self.loads[0]), self.loads[1] / scale
         limit = np.maximum(normal, 0.0) if self.over_forces else normal
         if self.over_forces:
             self._require_equilibrium(limit, tangential)
@@ -220,25 +207,25 @@ class SampledPath:
         limit, tangential : reduced forces F_N/E* and F_x/(mu E*) at the start and at each sample
             [length^2], shape (n + 1,).
         """
-        force, depth = self.tangential_points, self.normal_points
+        depth, force = self.points
+        place = "history", "tangential", self.controls[1]
         apart = np.minimum(depth[:-1], depth[1:]) < 0
         at_gap = apart & ((force[:-1] != 0) | (force[1:] != 0))
         if at_gap.any():
-            place = "history", "tangential", self.tangential_name, int(np.argmax(at_gap))
             detail = (
                 "no equilibrium: a tangential force acts where the bodies touch or separate; add a "
                 "point in contact without the force, or prescribe tangential_displacement"
             )
-            raise InputError(place, detail)
+            raise InputError((*place, int(np.argmax(at_gap))), detail)
         beyond = np.flatnonzero(np.abs(tangential) > limit * (1 + ROUNDING))
         if beyond.size:
-            place = "history", "tangential", self.tangential_name, int(self.step[beyond[0] - 1])
             detail = (
                 "no equilibrium: between the point before and this one the force exceeds "
                 "friction_coefficient x normal_force; reduce it, change the two loads in turn, or "
                 "prescribe tangential_displacement"
             )
-            raise InputError(place if beyond[0] else ("initial_state", "tangential"), detail)
+            at_start, at = ("initial_state", "tangential"), int(self.step[beyond[0] - 1])
+            raise InputError((*place, at) if beyond[0] else at_start, detail)
 
 
 def build(
@@ -267,27 +254,11 @@ def build(
         raise InputError(("history", "samples_per_step"), "must be at least 1")
     normal_points = _checked("normal", *normal)
     tangential_points = _checked("tangential", *tangential)
-    sizes = normal_points.size, tangential_points.size
-    if sizes[0] != sizes[1] and 1 not in sizes:
-        raise InputError(
-            ("history", "tangential", tangential[0]),
-            f"{sizes[1]} values do not match {sizes[0]} values of {normal[0]}: give one or as many",
-        )
-    points = np.broadcast_arrays(normal_points, tangential_points)
-    first, second = (
-        np.append(before, each)
-        for before, each in zip((begin.normal, begin.tangential), points, strict=True)
-    )
-    return SampledPath(start, normal[0], tangential[0], first, second, samples_per_step, begin)
-
-
-def _along(points: Array, count: int) -> Array:
-    """Return the first point, and the samples that divide each step to the next point evenly."""
-    start, stop = points[:-1, None], points[1:, None]
-    share = np.arange(1, count + 1)
-    # Proportional forces stay proportional to rounding error, even where they approach zero.
-    samples = start * ((count - share) / count) + stop * (share / count)
-    return np.append(points[0], np.where(start == stop, stop, samples))
+    place = "history", "tangential", tangential[0]
+    common_shape(place, tangential_points, normal[0], normal_points)
+    loads = np.array(np.broadcast_arrays(normal_points, tangential_points))
+    points = np.column_stack([(begin.normal, begin.tangential), loads])
+    return SampledPath(start, (normal[0], tangential[0]), points, samples_per_step, begin)
 
 
 def _checked(axis: str, name: str, value: Array) -> Array:

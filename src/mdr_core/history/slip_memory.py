@@ -26,6 +26,7 @@ from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from mdr_core.history import slip_kernel as kernel
 from mdr_core.history.slip_layout import COLUMNS, NORMAL, SLOPE
@@ -33,33 +34,6 @@ from mdr_core.typing import Array, Flags, Indices
 
 # A step adds at most three vertices: one on the axis, a corner and the load point.
 _VERTICES: Final = 3
-
-
-class LoadPoints(NamedTuple):
-    """Ends of straight load steps."""
-
-    normal: Array
-    """Normal coordinate, shape (n,); <= 0 in separation."""
-    tangential: Array
-    """Tangential coordinate, shape (n,)."""
-    continues: Flags
-    """True for steps that continue the straight line of the step before, shape (n,)."""
-
-
-class Polyline(NamedTuple):
-    """Polyline from the axis to the load point."""
-
-    vertices: Array
-    """Vertices, with the columns of `slip_layout`, shape (n, 4); none in separation."""
-    normal: float
-    """Normal coordinate of the load point, an exact copy of the input; <= 0 in separation."""
-    tangential: float
-    """Tangential coordinate of the load point, an exact copy of the input."""
-
-    @property
-    def in_contact(self) -> bool:
-        """True unless the bodies are separated."""
-        return len(self.vertices) > 0
 
 
 @dataclass(frozen=True)
@@ -72,7 +46,7 @@ class VertexTree:
     """Normal coordinate, and slope of the anchor below each vertex, shape (2, m)."""
     top: Indices
     """Vertex of the load point after each step, -1 in separation; shape (n,)."""
-    start: tuple[int, float, float] | tuple[Indices, Array, Array]
+    start: tuple[Indices, Array]
     """Vertex and coordinates of the load point before the first step, or before each of them."""
     path: Array
     """Normal and tangential coordinate of each load point, shape (2, n)."""
@@ -92,20 +66,6 @@ class VertexTree:
         """Length of the segment below each vertex (normal coordinate); arbitrary on the axis."""
         return np.maximum(self.normal - self.normal[self.parent], 0.0)
 
-    @property
-    def on_face(self) -> Flags:
-        """True where the springs of the segment below a vertex are at their friction limit."""
-        return np.asarray(np.abs(self.slope) == 1)
-
-    @property
-    def last(self) -> Indices:
-        """Vertices of the last polyline, from the axis."""
-        chain, vertex = [], int(self.top[-1])
-        while vertex >= 0:
-            chain.append(vertex)
-            vertex = int(self.parent[vertex])
-        return np.array(chain[::-1], dtype=np.intp)
-
     def at_load_points(self, values: Array) -> Array:
         """Return the values of the vertices of the load points, zero in separation."""
         return np.append(values, 0.0)[self.top]
@@ -118,25 +78,29 @@ class VertexTree:
 
 
 class Polylines(NamedTuple):
-    """Polylines of many contacts."""
+    """Polylines of one contact or of many, each from the axis to the load point."""
 
     vertices: Array
     """Vertices of all polylines, one after another, with the columns of `slip_layout`."""
     ends: Indices
     """End of each polyline among the vertices, shape (n,)."""
     load_points: Array
-    """Normal and tangential coordinate of each contact, shape (2, n)."""
+    """Normal and tangential coordinate of each load point, exact copies of the input, shape (2, n).
+
+    The normal coordinate is <= 0 in separation.
+    """
 
     @property
     def sizes(self) -> Indices:
         """Number of vertices of each polyline, 0 in separation."""
-        return np.diff(self.ends, prepend=0)
+        sizes = self.ends.copy()
+        sizes[1:] -= self.ends[:-1]
+        return sizes
 
-    def line(self, index: int) -> Polyline:
-        """Return one polyline."""
-        begin = self.ends[index - 1] if index else 0
-        rows = self.vertices[begin : self.ends[index]]
-        return Polyline(rows, *self.load_points[:, index].tolist())
+    @property
+    def owners(self) -> Indices:
+        """Index of the contact of each vertex."""
+        return np.repeat(np.arange(self.ends.size), self.sizes)
 
     def at(self, chosen: Indices) -> "Polylines":
         """Return the chosen polylines."""
@@ -147,43 +111,48 @@ class Polylines(NamedTuple):
 
     def tree(self, load_points: Array) -> VertexTree:
         """Return all polylines as a tree, with the step of each contact to a load point."""
-        begins, in_contact = self.ends - self.sizes, self.sizes > 0
-        parent = np.arange(-1, len(self.vertices) - 1, dtype=np.intp)
-        parent[begins[in_contact]] = -1
+        sizes, in_contact = self.sizes, self.sizes > 0
+        parent = np.arange(-1, len(self.vertices) - 1)
+        parent[(self.ends - sizes)[in_contact]] = -1
         top, rows = np.where(in_contact, self.ends - 1, -1), self.vertices[:, NORMAL:].T
-        return VertexTree(parent, rows, top, (top, *self.load_points), load_points)
+        return VertexTree(parent, rows, top, (top, self.load_points), load_points)
 
 
-def follow(start: Polyline, points: LoadPoints) -> tuple[VertexTree, Polyline]:
+def follow(start: Polylines, path: Array, continues: Flags) -> tuple[VertexTree, Polylines]:
     """Return the vertices of the polylines after straight steps, and the last polyline.
 
     A load point with a normal coordinate <= 0 separates the bodies and erases the memory.
+
+    Parameters
+    ----------
+    start : polyline before the first step.
+    path : normal and tangential coordinate of the load points, shape (2, n).
+    continues : True for steps that continue the straight line of the step before, shape (n,).
     """
-    path, held = np.array(points[:2]), as_tree(start)
-    made, most = held.parent.size, held.parent.size + _VERTICES * points.normal.size
+    held, path = start.tree(start.load_points), np.ascontiguousarray(path)
+    made, count = held.parent.size, continues.size
+    most = made + _VERTICES * count
     number, parent = np.arange(most), np.empty(most, dtype=np.intp)
-    vertices, top = np.empty((2, most)), np.empty(points.normal.size, dtype=np.intp)
+    vertices, top = np.empty((2, most)), np.empty(count, dtype=np.intp)
     parent[:made], vertices[:, :made] = held.parent, held.vertices
-    rows, stack = _stacked(start, top.size)
-    made = stack.run(path, points.continues, number, parent, vertices, top)
-    line = Polyline(read_only(rows[: stack.top + 1].copy()), *path[:, -1].tolist())
+    rows, stack = _stacked(start, count)
+    made = stack.run(path, continues, number, parent, vertices, top)
+    line = _single(rows[: stack.top + 1].copy(), path[:, -1])
     return VertexTree(parent[:made], vertices[:, :made], top, held.start, path), line
 
 
-def moved(line: Polyline, normal: float, tangential: float) -> tuple[Polyline, int]:
-    """Return the polyline after one straight step, and the number of unchanged vertices."""
+def moved(line: Polylines, load_point: tuple[float, float]) -> tuple[Polylines, int]:
+    """Return a polyline after one straight step, and the number of unchanged vertices."""
     rows, stack = _stacked(line, 1)
-    stack.move(normal, tangential, continues=False)
-    vertices = read_only(rows[: stack.top + 1].copy())
-    return Polyline(vertices, normal, tangential), stack.changed
+    stack.move(*load_point, continues=False)
+    return _single(rows[: stack.top + 1].copy(), load_point), stack.changed
 
 
 def moved_each(lines: Polylines, load_points: Array) -> Polylines:
     """Return many polylines after a straight step of each to a load point, shape (2, n)."""
     vertices, ends, before = lines
     path = np.vstack([before, load_points])
-    longest = int(np.diff(ends, prepend=0).max(initial=0))
-    rows = np.empty((longest + _VERTICES, COLUMNS))
+    rows = np.empty((int(lines.sizes.max(initial=0)) + _VERTICES, COLUMNS))
     moved, moved_ends = np.empty((len(vertices) + _VERTICES * ends.size, COLUMNS)), ends.copy()
     stack = kernel.PolylineStack(rows, -1, 0.0, 0.0)
     made = stack.run_each(ends, path, vertices, moved, moved_ends)
@@ -197,52 +166,52 @@ def joined(lines: Sequence[Polylines]) -> Polylines:
     return Polylines(read_only(vertices), ends, np.hstack([each.load_points for each in lines]))
 
 
-def _stacked(line: Polyline, steps: int) -> tuple[Array, kernel.PolylineStack]:
+def _stacked(line: Polylines, steps: int) -> tuple[Array, kernel.PolylineStack]:
     """Return a stack that starts with a polyline, and its rows, with room for some steps."""
     size = len(line.vertices)
     rows = np.empty((size + _VERTICES * steps, COLUMNS))
     rows[:size] = line.vertices
-    return rows, kernel.PolylineStack(rows, size - 1, line.normal, line.tangential)
+    return rows, kernel.PolylineStack(rows, size - 1, *line.load_points[:, 0].tolist())
 
 
-def separated(normal: float, tangential: float) -> Polyline:
-    """Return the polyline of bodies in separation, with the load point at `normal` <= 0."""
-    return Polyline(read_only(np.zeros((0, COLUMNS))), normal, tangential)
+def _single(vertices: Array, load_point: ArrayLike) -> Polylines:
+    """Return the polyline of a single contact."""
+    ends = np.array([len(vertices)])
+    return Polylines(read_only(vertices), ends, np.array(load_point).reshape(2, 1))
 
 
-def as_tree(line: Polyline, following: Polyline | None = None) -> VertexTree:
-    """Return one polyline as a tree without branches, and the step to the next polyline."""
-    count, path = len(line.vertices), np.array((following or line)[1:])[:, None]
-    vertices, chain = line.vertices[:, NORMAL:].T, np.arange(-1, count, dtype=np.intp)
-    return VertexTree(chain[:-1], vertices, chain[-1:], (count - 1, *line[1:]), path)
+def separated(load_points: Array) -> Polylines:
+    """Return the polylines of bodies in separation, with normal coordinates <= 0."""
+    none = np.zeros(load_points.shape[1], dtype=np.intp)
+    return Polylines(read_only(np.zeros((0, COLUMNS))), none, load_points)
 
 
-def stacked(span: Array, slope: Array) -> Polyline:
+def stacked(span: Array, slope: Array) -> Polylines:
     """Return the polyline from the axis whose segments have the given lengths and slopes."""
     vertices = np.zeros((span.size + 1, COLUMNS))
     growth = span * (1 + slope), span * (1 - slope), span
     vertices[1:, : NORMAL + 1] = np.cumsum(growth, axis=1).T
     vertices[1:, SLOPE] = slope
-    forward, backward, normal = vertices[-1, : NORMAL + 1].tolist()
-    return Polyline(read_only(vertices), normal, (forward - backward) / 2)
+    forward, backward, normal = vertices[-1, : NORMAL + 1]
+    return _single(vertices, (normal, (forward - backward) / 2))
 
 
-def through(sums: Array, normal: float, tangential: float) -> Polyline:
+def through(sums: Array, load_point: Array) -> Polylines:
     """Return the polyline through vertices to a load point, without a check.
 
     Parameters
     ----------
     sums : normal + anchor and normal - anchor, from the axis, shape (n, 2).
-    normal, tangential : coordinates of the load point.
+    load_point : normal and tangential coordinate of the load point, shape (2,).
     """
-    vertices = np.zeros((len(sums) + 1, COLUMNS))
+    vertices, (normal, tangential) = np.zeros((len(sums) + 1, COLUMNS)), load_point
     vertices[:, :NORMAL] = np.vstack([sums, [normal + tangential, normal - tangential]])
     vertices[:, NORMAL] = vertices[:, :NORMAL].sum(axis=1) / 2
     vertices[-1, NORMAL] = normal
     rise, fall = np.diff(vertices[:, :NORMAL], axis=0).T
     with np.errstate(invalid="ignore"):
         vertices[1:, SLOPE] = np.clip((rise - fall) / (rise + fall), -1.0, 1.0)
-    return Polyline(vertices, normal, tangential)
+    return _single(vertices, load_point)
 
 
 def read_only(values: Array) -> Array:

@@ -1,6 +1,7 @@
 """Load histories: forces, displacements, energies and slip regimes at every sample."""
 
-from collections.abc import Mapping
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar, Final
@@ -10,18 +11,30 @@ from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, normal, validity
 from mdr_core.doubles import EPS, ROUNDING
+from mdr_core.elementwise import in_blocks
 from mdr_core.errors import InputError
 from mdr_core.history import load_path, slip_memory
 from mdr_core.history.contact_state import ContactState, unloaded
 from mdr_core.history.load_path import UNLOADED, SampledPath, SavedState
 from mdr_core.history.slip_layout import NORMAL
-from mdr_core.history.step_results import REGIMES, StepResults
+from mdr_core.history.slip_memory import Polylines
+from mdr_core.history.tractions import (
+    REGIMES,
+    TractionVertices,
+    decides_regime,
+    regime_codes,
+)
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array, Indices
+from mdr_core.typing import Array, Indices, Numbers
 from mdr_core.validation import not_negative, only_one
 
+# Number of steps whose vertices are kept for later results, which takes 40 MB. The vertices of more
+# steps are computed again: that is faster than storing them, and memory is bounded.
+_KEPT: Final = 262_144
+# Vertices of a range of steps, and the polyline after these steps.
+_Block = tuple[TractionVertices, Polylines]
 # Location in the request of the normal load from which a history starts.
 _BEGIN: Final = ("initial_state", "normal")
 
@@ -33,8 +46,8 @@ class LoadHistory(validity.ResultsOverLoads):
     path: SampledPath
     e_star: float | Material
     """Effective modulus [pressure], or the material that has it."""
-    results: StepResults
-    """Results of the tangential foundation in reduced units."""
+    before: Polylines
+    """Slip memory at the start."""
     quantities: ClassVar[tuple[str, ...]] = (
         "step",
         "indentation_depth",
@@ -52,8 +65,13 @@ class LoadHistory(validity.ResultsOverLoads):
     @cached_property
     def normal(self) -> NormalContact:
         """Normal contact of every sample, with zero load in separation."""
-        given = {self.path.normal_name: np.maximum(self.path.normal, 0.0)}
+        given = {self.path.controls[0]: np.maximum(self._load, 0.0)}
         return normal.solve(self.path.start.profile, self.e_star, **given)
+
+    @property
+    def _load(self) -> Array:
+        """Prescribed depth or normal force of every sample."""
+        return self.path.loads[0, 1:]
 
     @property
     def step(self) -> Indices:
@@ -64,7 +82,7 @@ class LoadHistory(validity.ResultsOverLoads):
     def indentation_depth(self) -> Array:
         """d [length]; negative in separation."""
         if self.path.depth_prescribed:
-            return self.path.normal
+            return self._load
         return self.normal.indentation_depth
 
     @property
@@ -75,7 +93,7 @@ class LoadHistory(validity.ResultsOverLoads):
     @cached_property
     def contact_radius(self) -> Array:
         """a [length]; zero in separation."""
-        return np.where(self.path.normal < 0, 0.0, self.normal.contact_radius)
+        return np.where(self._load < 0, 0.0, self.normal.contact_radius)
 
     @property
     def elastic_energy(self) -> Array:
@@ -87,8 +105,9 @@ class LoadHistory(validity.ResultsOverLoads):
         """F_x = mu E* sum k_i (I_i - I_i-1) over the segments [force]. Source: notes, §10."""
         start = self.path.start
         if self.path.over_forces:
-            return self.path.tangential
-        return start.friction_coefficient * start.e_star * self.results.shear
+            return self.path.loads[1, 1:]
+        shear = self._per_step(lambda each: each.tree.at_load_points(each.shear))
+        return start.friction_coefficient * start.e_star * shear
 
     @cached_property
     def tangential_displacement(self) -> Array:
@@ -97,19 +116,21 @@ class LoadHistory(validity.ResultsOverLoads):
         Source: notes, §10. Full slip under a prescribed force leaves the displacement undetermined;
         from then on it is counted from the axis.
         """
-        if self.path.over_forces:
-            return self.path.start.displacement_ratio * self.results.displacement
-        return self.path.tangential
+        if not self.path.over_forces:
+            return self.path.loads[1, 1:]
+        anchor = self._per_step(lambda each: each.tree.at_load_points(each.anchor))
+        return self.path.start.displacement_ratio * anchor
 
     @cached_property
     def tangential_energy(self) -> Array:
         """Energy stored by the tangential load, int q_x^2/(2 G*) dx [force length], >= 0."""
-        return self.path.start.energy_unit * self.results.energy
+        energy = self._per_step(lambda each: each.tree.at_load_points(each.square))
+        return self.path.start.energy_unit * energy
 
     @cached_property
     def dissipation(self) -> Array:
         """Energy dissipated by friction since the sample before [force length], >= 0."""
-        return self.path.start.energy_unit * self.results.dissipation
+        return self.path.start.energy_unit * self._per_step(lambda each: each.dissipation)
 
     @cached_property
     def dissipated_energy(self) -> Array:
@@ -120,34 +141,63 @@ class LoadHistory(validity.ResultsOverLoads):
     def regime(self) -> "np.ndarray[Any, np.dtype[np.str_]]":
         """Slip regime: "no_contact", "stick", "partial_slip" or "full_slip".
 
-        It depends on the springs at their friction limit: none, the outermost, or all.
+        It depends on the springs at their friction limit: see `regime_codes`, `decides_regime`.
         """
-        return np.array(REGIMES)[self.results.regime]
+        codes = self._per_step(regime_codes).astype(np.intp)
+        coordinates, before = self.path.coordinates, REGIMES.index(self.path.begin.regime)
+        known = decides_regime(codes, coordinates[0, 1:], *np.diff(coordinates))
+        last = np.maximum.accumulate(np.where(known, np.arange(codes.size), -1))
+        codes = np.maximum(np.where(last < 0, before, codes[last]), codes > 0)
+        return np.array(REGIMES)[codes]
 
     @property
     def g_star(self) -> float:
         """Effective shear modulus [pressure]."""
         return self.path.start.g_star
 
+    @property
+    def _blocks(self) -> Iterable[_Block]:
+        return self._kept if self._load.size <= _KEPT else self._follow()
+
+    @cached_property
+    def _kept(self) -> list[_Block]:
+        return list(self._follow())
+
+    def _follow(self) -> Iterator[_Block]:
+        line, path, continues = self.before, self.path.coordinates[:, 1:], self.path.continues
+        for block in in_blocks(continues.size):
+            tree, line = slip_memory.follow(line, path[:, block], continues[block])
+            yield TractionVertices(self.path.moments, tree), line
+
+    def _per_step(self, result: Callable[[TractionVertices], Numbers]) -> Numbers:
+        """Return a result of every step."""
+        return np.concatenate([result(vertices) for vertices, _ in self._blocks])
+
+    @cached_property
+    def _after(self) -> Polylines:
+        """Slip memory at the end."""
+        return deque(self._blocks, maxlen=1)[0][1]
+
     @cached_property
     def state(self) -> ContactState:
         """State of the contact at the end of the history."""
-        vertices, line = self.results.end
-        if self.path.over_forces and line.in_contact:
-            span = vertices.conjugate_step[vertices.tree.last[1:]]
-            line = slip_memory.stacked(span, slip_memory.as_tree(line).slope[1:])
+        line = self._after
+        if self.path.over_forces and len(line.vertices):
+            vertices = TractionVertices(self.path.moments, line.tree(line.load_points))
+            line = slip_memory.stacked(vertices.conjugate_step[1:], vertices.tree.slope[1:])
         return replace(self.path.start, polyline=line, before=line)
 
     @property
     def final_state(self) -> dict[str, Any]:
         """State at the end, from which `solve` continues the history; it can be stored as JSON."""
+        normal, tangential = self.path.loads[:, -1].tolist()
         return SavedState(
-            load_path.digest(self.path.start, self.path.normal_name, self.path.tangential_name),
-            float(self.path.normal[-1]),
-            float(self.path.tangential[-1]),
+            load_path.digest(self.path.start, *self.path.controls),
+            normal,
+            tangential,
             float(self.dissipated_energy[-1]),
             str(self.regime[-1]),
-            self.results.end.line.vertices[:-1, :NORMAL].tolist(),
+            self._after.vertices[:-1, :NORMAL].tolist(),
         )._asdict()
 
     @property
@@ -166,7 +216,7 @@ class LoadHistory(validity.ResultsOverLoads):
         of_sums = (conditioning.OF_SUMS + self._condition_number) * self.normal.error_estimate
         return of_sums + self.rounding
 
-    @property
+    @cached_property
     def rounding(self) -> float:
         """Relative rounding error of steps of the tangential load and of the slip front [1].
 
@@ -191,8 +241,8 @@ class LoadHistory(validity.ResultsOverLoads):
         """Largest relative condition number of the results with respect to the loads."""
         limit = self.path.start.friction_coefficient * np.asarray(self.normal_force)
         if self.path.over_forces:
-            return conditioning.of_forces(self.normal, np.abs(self.path.tangential), limit)
-        loads = self.path.tangential, self.tangential_force, limit
+            return conditioning.of_forces(self.normal, np.abs(self.tangential_force), limit)
+        loads = self.tangential_displacement, self.tangential_force, limit
         return conditioning.of_sliding(*loads, lambda: float(self.dissipated_energy[-1]))
 
     @property
@@ -278,9 +328,7 @@ def solve(
             raise InputError(_BEGIN, not_negative("normal_force"))
     path = load_path.build(start, pressed, pushed, samples_per_step, begin)
     _require_solvable(path)
-    at_start = begin.restored(*path.coordinates[:, 0].tolist())
-    results = StepResults(path.moments, path.load_points, at_start, begin.regime)
-    return LoadHistory(path, e_star, results)
+    return LoadHistory(path, e_star, begin.restored(path.coordinates[:, 0]))
 
 
 def _require_solvable(path: SampledPath) -> None:
@@ -288,13 +336,13 @@ def _require_solvable(path: SampledPath) -> None:
 
     It suffices that the largest load and the smallest load above zero have a solution.
     """
-    loads = np.maximum(path.normal_loads, 0.0)
+    loads, name = np.maximum(path.loads[0], 0.0), path.controls[0]
     ends = np.array([loads.argmax(), np.where(loads > 0, loads, np.inf).argmin()])
     try:
-        normal.solve(path.start.profile, path.start.e_star, **{path.normal_name: loads[ends]})
+        normal.solve(path.start.profile, path.start.e_star, **{name: loads[ends]})
     except InputError as error:
         if error.path[:1] != ("load",):
             raise
         at = int(ends[error.path[2]])
-        place = "history", "normal", path.normal_name, int(path.step[at - 1])
+        place = "history", "normal", name, int(path.step[at - 1])
         raise InputError(place if at else _BEGIN, error.detail) from None

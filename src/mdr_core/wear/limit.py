@@ -15,8 +15,7 @@ from mdr_core.elementwise import broadcast, in_blocks, some, where
 from mdr_core.errors import AccuracyError, InputError, Notice, Remedy
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
-from mdr_core.stick_zone import CONTROLS
-from mdr_core.tangential import TangentialContact
+from mdr_core.tangential import CONTROLS, TangentialContact
 from mdr_core.typing import Array, Parameter
 from mdr_core.validation import (
     UNRESOLVED,

@@ -7,8 +7,10 @@ Source: mindlin-deresiewicz; notes, §15.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
 from math import inf
-from typing import Final
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,19 +18,23 @@ from numpy.typing import ArrayLike
 from mdr_core import residuals, tangential
 from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
-from mdr_core.estimation import Precision, minimum, require_fitted
-from mdr_core.hysteresis.result import PARAMETERS, LoopFit
+from mdr_core.estimation import LeastSquaresFit, Precision, minimum, require_fitted
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_core.validation import (
     as_curve,
+    as_positive,
     require_not_negative,
-    require_single_positive,
     require_type,
     single,
 )
 
+PARAMETERS: Final = (
+    *("g_star", "friction_coefficient", "force_offset", "rig_compliance"),
+    "displacement_offset",
+)
+"""Quantities that can be fitted."""
 # Amplitudes that are tried first, over that of full slip; parts of the latter in the rig; points of
 # first loading between which the forces are interpolated for this.
 _TRIED, _IN_RIG, _POINTS = np.geomspace(0.01, 30.0, 40), np.linspace(0.0, 0.96, 25), 200
@@ -52,6 +58,63 @@ _CAUSES: Final = {
     "correlated_noise": "the forces drift, or neighbouring errors are alike",
 }
 _CODES: Final = {"two_branches": "misfit", "drift": "correlated_noise"}
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class LoopFit(LeastSquaresFit):
+    """Fitted parameters of a loop with their standard errors."""
+
+    turning: TangentialContact
+    """Contact at the turning points of the loop, as on first loading."""
+    force_offset: float
+    """F_0, the force in the middle of the loop [force]."""
+    displacement_offset: float
+    """U_0, the displacement in the middle of the loop [length]."""
+    rig_compliance: float
+    """C, as given or fitted [length/force]."""
+    tangential_displacement: Array
+    """Measured displacements [length], shape (k,)."""
+    tangential_force: Array
+    """Fitted forces [force], shape (k,)."""
+    dissipated_energy_error: float
+    """Standard deviation of `dissipated_energy`, by those of the parameters [force length]."""
+    quantities: ClassVar[tuple[str, ...]] = (
+        *("fit", "g_star", "friction_coefficient", "force_offset", "rig_compliance"),
+        "displacement_offset",
+        *("standard_errors", "correlation", "noise", "misfit"),
+        *("dissipated_energy", "dissipated_energy_error"),
+        *("tangential_displacement", "tangential_force", "residual"),
+    )
+
+    @property
+    def solved(self) -> TangentialContact:
+        """Contact on which the validity depends."""
+        return self.turning
+
+    @property
+    def normal(self) -> NormalContact:
+        """Contact under the normal load."""
+        return self.turning.normal
+
+    @property
+    def g_star(self) -> float:
+        """Effective shear modulus G* [pressure]."""
+        return float(self.turning.g_star)
+
+    @property
+    def friction_coefficient(self) -> float:
+        """mu [1]."""
+        return float(self.turning.friction_coefficient)
+
+    @property
+    def dissipated_energy(self) -> float:
+        """Energy of a cycle, four times that dissipated on first loading [force length]."""
+        return 4 * float(self.turning.dissipated_energy)
+
+    @property
+    def warnings_without_bodies(self) -> tuple[Notice, ...]:
+        """Warnings that do not depend on the bodies."""
+        return *self.turning.warnings_without_bodies, *self.notices
 
 
 def solve(
@@ -108,17 +171,14 @@ def solve(
     require_type("contact", contact, NormalContact, "a contact from normal.solve")
     if np.ndim(contact.normal_force) or not contact.normal_force > 0:
         raise InputError(("contact",), "must be under a single normal load")
-    given = g_star, friction_coefficient, None, rig_compliance, None
-    known = dict(zip(PARAMETERS, given, strict=True))
-    fit = [name for name in PARAMETERS[:4] if known[name] is None] if fit is None else fit
     names = "g_star", "friction_coefficient", "rig_compliance"
-    require_fitted(fit, PARAMETERS, {name: known[name] for name in names})
-    for name in names[:2]:
-        if (value := known[name]) is not None:
-            require_single_positive((name,), value)
-    if rig_compliance is not None:
-        place = ("rig_compliance",)
-        require_not_negative(place, np.asarray(single(place, rig_compliance)))
+    known = dict(zip(names, (g_star, friction_coefficient, rig_compliance), strict=True))
+    fit = [name for name in PARAMETERS[:4] if known.get(name) is None] if fit is None else fit
+    require_fitted(fit, PARAMETERS, known)
+    for name, value in known.items():
+        if value is not None:
+            require = require_not_negative if name == "rig_compliance" else as_positive
+            require((name,), np.asarray(single((name,), value)))
     lists = {"tangential_displacement": tangential_displacement}
     curve = as_curve("displacements", **lists, tangential_force=tangential_force)
     if curve[0].size < _FEWEST * len(fit) or np.ptp(curve[0]) == 0:
@@ -214,24 +274,28 @@ class _Loop:
         law = tangential.solve(pressed, pressed.e_star, 1.0, tangential_displacement=part * depth)
         reached = law.tangential_force / pressed.normal_force
         some = slice(None, None, max(1, self.force.size // _POINTS))
-        measured, ones = self.force[some] / self.size, np.ones_like(self.force[some])
-        best, found, on_first = inf, None, self.places(np.zeros(5)) / self.amplitude
-        for in_rig in _IN_RIG[: 1 if self.known["rig_compliance"] == 0 else None].tolist():
-            places = (1 - in_rig) * part + in_rig * reached
-            for ratio in _TRIED.tolist():
-                first = np.interp(on_first * ratio, places, reached)
-                columns = np.column_stack([self.branches(first)[some], ones])
-                (limit, offset), *_ = np.linalg.lstsq(columns, measured)
-                whole = self.amplitude / ratio
-                left = float(np.sum(np.square(columns @ [limit, offset] - measured)))
-                if limit > 0 and left < best:
-                    friction = limit * self.size / float(pressed.normal_force)
-                    g_star = friction * float(pressed.e_star) * depth / ((1 - in_rig) * whole)
-                    rig = in_rig / ratio / limit
-                    best, found = left, [np.log(g_star), np.log(friction), offset, rig, 0.0]
-        if found is None:
+        measured, on_first = self.force[some] / self.size, self.places(np.zeros(5)) / self.amplitude
+        rigs = _IN_RIG[: 1 if self.known["rig_compliance"] == 0 else None].tolist()
+        tried = list(product(rigs, _TRIED.tolist()))
+        firsts = (
+            np.interp(on_first * ratio, (1 - in_rig) * part + in_rig * reached, reached)
+            for in_rig, ratio in tried
+        )
+        shapes = np.array([self.branches(first)[some] for first in firsts])
+        rising = shapes - shapes.mean(axis=1)[:, None]
+        sizes = np.linalg.norm(rising, axis=1)
+        # The sum of squares is least where the part of the forces in the shape is largest.
+        along = rising @ measured / np.where(sizes > 0, sizes, inf)
+        best = int(along.argmax())
+        if not along[best] > 0:
             raise InputError(("tangential_force",), "must rise with the displacement")
-        values = np.array([self.known[name] for name in PARAMETERS], dtype=float) / self.units
+        (in_rig, ratio), limit = tried[best], float(along[best] / sizes[best])
+        friction = limit * self.size / float(pressed.normal_force)
+        whole = (1 - in_rig) * self.amplitude / ratio
+        g_star = friction * float(pressed.e_star) * depth / whole
+        offset = measured.mean() - limit * shapes[best].mean()
+        found = [np.log(g_star), np.log(friction), offset, in_rig / ratio / limit, 0.0]
+        values = np.array([self.known.get(name) for name in PARAMETERS], dtype=float) / self.units
         given = [*np.log(values[:2]), 0.0, values[3], 0.0]
         return np.where(np.isin(range(5), self.free), found, given)
 

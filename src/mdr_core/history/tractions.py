@@ -1,4 +1,4 @@
-"""Results of the tangential foundation at every load point, from the polylines of its slip memory.
+"""Traction of the tangential foundation, from the polylines of its slip memory.
 
 Along the polyline the anchor grows by k dw, where w is the depth at which a spring comes into
 contact. With I(w) = F_N/E* of the contact of depth w,
@@ -9,25 +9,18 @@ for every profile. Where forces are prescribed the normal coordinate is I itself
 follow from the same slopes: u_x G*/(mu E*) = sum k_i (w_i - w_i-1). Source: notes, §10.
 """
 
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
 from mdr_core.doubles import ROUNDING
-from mdr_core.elementwise import in_blocks
-from mdr_core.history import slip_memory
 from mdr_core.history.friction_work import dissipation
-from mdr_core.history.slip_memory import LoadPoints, Polyline, VertexTree
+from mdr_core.history.slip_memory import VertexTree
 from mdr_core.interval_moments import IntervalMoments, interval_moments
-from mdr_core.typing import Array, Flags, Indices, Numbers
+from mdr_core.typing import Array, Flags, Indices
 
-# Number of steps whose vertices are kept for later results, which takes 40 MB. The vertices of more
-# steps are computed again: that is faster than storing them, and memory is bounded.
-_KEPT: Final = 262_144
 # Slip regimes, in the order of their codes.
 REGIMES: Final = ("no_contact", "stick", "partial_slip", "full_slip")
 # If a segment is shorter than this part of its normal coordinate, a difference of conjugates loses
@@ -139,8 +132,9 @@ def variance_growth(
 def regime_codes(vertices: TractionVertices) -> Indices:
     """Return the index in `REGIMES` for the springs at their limit: none, the outermost, or all."""
     tree, slips = vertices.tree, 1 if vertices.moments.profile.is_flat_punch else 2
-    full = tree.on_face & (tree.parent[tree.parent] < 0)
-    codes = np.where(full, 3, np.where(tree.on_face, slips, 1))
+    at_limit = np.abs(tree.slope) == 1
+    full = at_limit & (tree.parent[tree.parent] < 0)
+    codes = np.where(full, 3, np.where(at_limit, slips, 1))
     return tree.at_load_points(codes).astype(np.intp)
 
 
@@ -158,88 +152,3 @@ def decides_regime(codes: Indices, normal: Array, deeper: Array, further: Array)
     """
     rounding = np.where(deeper > 0, ROUNDING * normal, 0.0)
     return (codes < 2) | (np.abs(further) - deeper > rounding)
-
-
-class Block(NamedTuple):
-    """Results at the vertices of a range of steps, and the polyline after these steps."""
-
-    vertices: TractionVertices
-    line: Polyline
-
-
-@dataclass(frozen=True)
-class StepResults:
-    """Results after each of a sequence of straight load steps, in reduced units.
-
-    Each result is computed on first use. Up to `_KEPT` steps the slip memory is followed once for
-    all results.
-    """
-
-    moments: IntervalMoments
-    points: LoadPoints
-    start: Polyline
-    """Polyline before the first step."""
-    regime_before: str
-    """Slip regime before the first step."""
-
-    @cached_property
-    def shear(self) -> Array:
-        """F_x/(mu E*) [length^2]."""
-        return self._per_step(lambda block: block.tree.at_load_points(block.shear))
-
-    @cached_property
-    def displacement(self) -> Array:
-        """G* u_x/(mu E*) [length], from zero on the axis."""
-        return self._per_step(lambda block: block.tree.at_load_points(block.anchor))
-
-    @cached_property
-    def energy(self) -> Array:
-        """Stored tangential energy over (mu E*)^2/G* [length^3], >= 0."""
-        return self._per_step(lambda block: block.tree.at_load_points(block.square))
-
-    @cached_property
-    def dissipation(self) -> Array:
-        """Energy dissipated on each step over (mu E*)^2/G* [length^3], >= 0."""
-        return self._per_step(lambda block: block.dissipation)
-
-    @cached_property
-    def regime(self) -> Indices:
-        """Index in `REGIMES` of the slip regime.
-
-        Determined by the springs at their friction limit: see `regime_codes`, `decides_regime`.
-        """
-        codes = self._per_step(regime_codes).astype(np.intp)
-        before = REGIMES.index(self.regime_before)
-        deeper = np.diff(self.points.normal, prepend=self.start.normal)
-        further = np.diff(self.points.tangential, prepend=self.start.tangential)
-        known = decides_regime(codes, self.points.normal, deeper, further)
-        last = np.maximum.accumulate(np.where(known, np.arange(codes.size), -1))
-        return np.maximum(np.where(last < 0, before, codes[last]), codes > 0)
-
-    @cached_property
-    def end(self) -> Block:
-        """Last block, with the polyline after all steps."""
-        return deque(self._blocks, maxlen=1)[0]
-
-    @property
-    def _blocks(self) -> Iterable[Block]:
-        return self._kept if self.points.normal.size <= _KEPT else self._follow()
-
-    @cached_property
-    def _kept(self) -> list[Block]:
-        return list(self._follow())
-
-    def _follow(self) -> Iterator[Block]:
-        line = self.start
-        for block in in_blocks(self.points.normal.size):
-            points = LoadPoints._make(row[block] for row in self.points)
-            tree, line = slip_memory.follow(line, points)
-            yield Block(TractionVertices(self.moments, tree), line)
-
-    def _per_step(self, result: Callable[[TractionVertices], Numbers]) -> Numbers:
-        """Return a result of every step, zero in blocks without contact."""
-        found = [
-            result(vertices) if vertices.tree.parent.size else np.zeros(vertices.tree.top.shape)
-            for vertices, _ in self._blocks
-        ]
-        return found[0] if len(found) == 1 else np.concatenate(found)
