@@ -44,7 +44,11 @@ _Brackets = tuple[Indices, Array, Array]
 
 
 def largest_stress(
-    profile: Profile, edge: Array, loaded: Flags, slip: tuple[Array, Array] | None = None
+    profile: Profile,
+    edge: Array,
+    loaded: Flags,
+    slip: tuple[Array, Array] | None = None,
+    added: _Field | None = None,
 ) -> Array:
     """Return the largest (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx of each contact [1].
 
@@ -61,6 +65,8 @@ def largest_stress(
     loaded : True for loads that are not zero.
     slip : widths a - c of the slip annulus and stick radii c in the contact coordinate; None for
         c = 0.
+    added : another field, of indices of loads and radii, that is finite and zero on the axis; None
+        for none. Where the stress is known to fall from the axis, it falls as well.
     """
     if slip and isinstance(profile, Paraboloid):
         return 2 * np.sqrt(slip[0] * (edge + slip[1])) / (np.pi * profile.radius)
@@ -69,14 +75,16 @@ def largest_stress(
         falls = profile.falls_from_axis(edge)
         if every(falls & ~infinite):
             return where(loaded, profile.axis_stress(edge), 0.0)
-        known = _of_similar(profile, edge)
+        known = known if added else _of_similar(profile, edge)
         if some(falls):
             known = where(falls, profile.axis_stress(edge), known)
     result = np.atleast_1d(where(infinite, inf, where(loaded, known, 0.0)))
     shape, unknown = loaded.shape, np.isnan(result)
     parts = [np.broadcast_to(part, result.shape) for part in (edge, *(slip or ()))]
     if not profile.swept:
-        result[unknown] = _search(profile, *(part[unknown] for part in parts))
+        index = np.flatnonzero(unknown)
+        own = added and (lambda load, radius: added(index[load], radius))
+        result[unknown] = _search(profile, *(part[unknown] for part in parts), added=own)
         return result.reshape(shape)[()]
     named = {name: np.broadcast_to(value, shape) for name, value in profile.parameters.items()}
     for place in zip(*np.nonzero(unknown), strict=True):
@@ -136,30 +144,17 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
 
 
 def largest_with(profile: Profile, edge: Array, loaded: Flags, added: _Field) -> Array:
-    """Return the largest sum of the stress and of another field, each of a contact [1].
+    """Return the largest sum of the stress and of another finite field, each of a contact [1].
 
-    Where the stress is known to fall from the axis, the other field falls as well.
-
-    Parameters
-    ----------
-    profile, edge, loaded : see `largest_stress`.
-    added : the field, finite, of indices of loads and radii.
+    Parameters: see `largest_stress`.
     """
-    ends, pressed = np.atleast_1d(edge), np.atleast_1d(loaded)
-    falls = pressed & profile.falls_from_axis(ends)
-    infinite = _infinite(profile, ends, pressed & ~falls)
-    found = np.flatnonzero(pressed & ~falls & ~infinite)
-    largest = np.where(infinite, inf, 0.0)
-    axis = added(np.arange(ends.size), np.zeros(ends.size))
-    if falls.any():
-        largest[falls] = profile.axis_stress(ends[falls])
-    if found.size:
+    axis = added(np.arange(np.size(edge)), np.zeros(np.size(edge)))
 
-        def above_axis(load: Indices, radius: Array) -> Array:
-            return added(found[load], radius) - axis[found[load]]
+    def above_axis(load: Indices, radius: Array) -> Array:
+        return added(load, radius) - axis[load]
 
-        largest[found] = _search(profile, ends[found], added=above_axis)
-    return (largest + axis).reshape(np.shape(edge))[()]
+    largest = largest_stress(profile, edge, loaded, added=above_axis)
+    return (largest + axis.reshape(np.shape(edge)))[()]
 
 
 def _infinite(

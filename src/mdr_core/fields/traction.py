@@ -154,9 +154,9 @@ def tractions(contact: Loaded) -> tuple[tuple[int, ...], Callable[[int], Tractio
         elif width > 0:
             ends, radii, widths = [0.0, edge, top], [flat, c, a], [edge, width]
             slopes, above = [0.0, sign], [moved, 0.0]
-        known = profile, e_star, mu * e_star, ratio
         annuli: Any = map(np.array, (ends, radii, widths, slopes, above))
-        return Traction(*known, *annuli, exact=exact, excess=excess)
+        found = Traction(profile, e_star, mu * e_star, ratio, *annuli)
+        return found._replace(exact=exact, excess=excess)
 
     return shape, traction
 
