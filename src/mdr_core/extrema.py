@@ -44,11 +44,7 @@ _Brackets = tuple[Indices, Array, Array]
 
 
 def largest_stress(
-    profile: Profile,
-    edge: Array,
-    loaded: Flags,
-    slip: tuple[Array, Array] | None = None,
-    added: _Field | None = None,
+    profile: Profile, edge: Array, loaded: Flags, slip: tuple[Array, Array] | None = None
 ) -> Array:
     """Return the largest (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx of each contact [1].
 
@@ -65,8 +61,6 @@ def largest_stress(
     loaded : True for loads that are not zero.
     slip : widths a - c of the slip annulus and stick radii c in the contact coordinate; None for
         c = 0.
-    added : another field, of indices of loads and radii, that is finite and zero on the axis; None
-        for none. Where the stress is known to fall from the axis, it falls as well.
     """
     if slip and isinstance(profile, Paraboloid):
         return 2 * np.sqrt(slip[0] * (edge + slip[1])) / (np.pi * profile.radius)
@@ -75,16 +69,14 @@ def largest_stress(
         falls = profile.falls_from_axis(edge)
         if every(falls & ~infinite):
             return where(loaded, profile.axis_stress(edge), 0.0)
-        known = known if added else _of_similar(profile, edge)
+        known = _of_similar(profile, edge)
         if some(falls):
             known = where(falls, profile.axis_stress(edge), known)
     result = np.atleast_1d(where(infinite, inf, where(loaded, known, 0.0)))
     shape, unknown = loaded.shape, np.isnan(result)
     parts = [np.broadcast_to(part, result.shape) for part in (edge, *(slip or ()))]
     if not profile.swept:
-        index = np.flatnonzero(unknown)
-        own = added and (lambda load, radius: added(index[load], radius))
-        result[unknown] = _search(profile, *(part[unknown] for part in parts), added=own)
+        result[unknown] = _search(profile, *(part[unknown] for part in parts))
         return result.reshape(shape)[()]
     named = {name: np.broadcast_to(value, shape) for name, value in profile.parameters.items()}
     for place in zip(*np.nonzero(unknown), strict=True):
@@ -144,17 +136,27 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
 
 
 def largest_with(profile: Profile, edge: Array, loaded: Flags, added: _Field) -> Array:
-    """Return the largest sum of the stress and of another finite field, each of a contact [1].
+    """Return the largest sum of the stress and of another field, each of a contact [1].
 
-    Parameters: see `largest_stress`.
+    Where the stress is known to fall from the axis, the other field falls as well. Within a flat
+    the sum is largest on the axis or at the edge of the flat.
+
+    Parameters
+    ----------
+    profile, edge, loaded : see `largest_stress`.
+    added : the field, finite, of indices of loads and radii.
     """
-    axis = added(np.arange(np.size(edge)), np.zeros(np.size(edge)))
-
-    def above_axis(load: Indices, radius: Array) -> Array:
-        return added(load, radius) - axis[load]
-
-    largest = largest_stress(profile, edge, loaded, added=above_axis)
-    return (largest + axis.reshape(np.shape(edge)))[()]
+    ends, pressed = np.atleast_1d(edge), np.atleast_1d(loaded)
+    infinite = _infinite(profile, ends, pressed)
+    largest = added(np.arange(ends.size), np.zeros(ends.size))
+    largest[infinite], finite = inf, pressed & ~infinite
+    if finite.any():
+        largest[finite] += profile.axis_stress(ends[finite])
+    found = np.flatnonzero(finite & ~profile.falls_from_axis(ends))
+    if found.size:
+        others = _search(profile, ends[found], added=lambda i, r: added(found[i], r))
+        largest[found] = np.maximum(largest[found], others)
+    return largest.reshape(np.shape(edge))[()]
 
 
 def _infinite(
@@ -192,7 +194,7 @@ def _search(profile: Profile, edge: Array, *slip: Array, added: _Field | None = 
     """The largest stress of contacts with one profile, where it is finite; shape (loads,).
 
     The stress is sampled between its singular radii. Every candidate for the highest peak is then
-    bracketed more and more closely. `added` is a field that vanishes on the axis.
+    bracketed more and more closely.
     """
     c = [profile.contact_radius(part) for part in slip[1:]]
 
@@ -237,7 +239,7 @@ def _sampled(field: _Field, load: Indices, samples: Array, best: Array) -> _Brac
     before = np.concatenate([values[:, :1], values[:, :-1]], axis=1)
     after = np.concatenate([values[:, 1:], values[:, -1:]], axis=1)
     reach = 2 * values - np.minimum(before, after)
-    peak = (values >= before) & (values >= after) & (values > 0)
+    peak = (values >= before) & (values >= after)
     row, at = np.nonzero(peak & (reach >= best[load][:, None]))
     last = samples.shape[1] - 1
     ends = samples[row, np.maximum(at - 1, 0)], samples[row, np.minimum(at + 1, last)]
