@@ -20,10 +20,9 @@ from mdr_core.validation import extremes, first_index, require_inside, require_n
 # Stress at radii, given as contact coordinates, under the loads of these indices; all (m,).
 _Field = Callable[[Indices, Array], Array]
 
-# Number of samples between two singular radii, at both of which they cluster. The pressure under
-# the power r^100 has the narrowest smooth peak, next to the contact edge: four samples lie above
-# half its height.
-_SAMPLES: Final = 64
+# Number of brackets between two singular radii, at both of which they cluster. The pressure under
+# the power r^100 has the narrowest smooth peak, next to the contact edge.
+_INTERVALS: Final = 8
 # Relative variation of the stress in the last bracket.
 _LEAST_STEP: Final = 1e-13
 # Relative step of the derivative of a searched maximum, whose own error is about 1e-13.
@@ -193,8 +192,7 @@ def _curve() -> BSpline:
 def _search(profile: Profile, edge: Array, *slip: Array, added: _Field | None = None) -> Array:
     """The largest stress of contacts with one profile, where it is finite; shape (loads,).
 
-    The stress is sampled between its singular radii. Every candidate for the highest peak is then
-    bracketed more and more closely.
+    The brackets lie between the singular radii, at which they cluster.
     """
     c = [profile.contact_radius(part) for part in slip[1:]]
 
@@ -205,45 +203,22 @@ def _search(profile: Profile, edge: Array, *slip: Array, added: _Field | None = 
         stress = profile.pressure_kernel_at(annulus, at)
         return stress if added is None else stress + added(load, profile.contact_radius(at))
 
-    best = np.zeros(edge.size)
+    best = np.full(edge.size, -inf)
     fixed = np.append(0.0, profile.coordinate_breaks)
-    count = max(_SAMPLES // max(fixed.size - 1, 1), _NINE.size - 1)
-    for block in in_blocks(edge.size, fixed.size * count):
+    count = max(_INTERVALS // max(fixed.size - 1, 1), 1)
+    for block in in_blocks(edge.size, fixed.size * count * _NINE.size):
         load = np.arange(edge.size)[block]
         same = np.broadcast_to(fixed, (load.size, fixed.size))
         stops = np.concatenate([same, *(part[load, None] for part in (edge, *slip[1:]))], axis=1)
         stops = np.sort(np.clip(stops, fixed[0], edge[load, None]), axis=1)
-        _refine(field, _sampled(field, load, _between(stops, count), best), best)
+        shares = (1 - np.cos(np.pi * np.arange(count + 1) / count)) / 2
+        ends = np.minimum(
+            stops[:, :-1, None] + np.diff(stops)[..., None] * shares, stops[:, 1:, None]
+        )
+        row, *place = np.nonzero(np.diff(ends) > 0)
+        low, high = (part[row, *place] for part in (ends[..., :-1], ends[..., 1:]))
+        _refine(field, (load[row], low, high), best)
     return best
-
-
-def _clustered(count: int) -> Array:
-    """Points of [0, 1] that divide it into `count` intervals and cluster at both ends."""
-    return np.asarray((1 - np.cos(np.pi * np.arange(count + 1) / count)) / 2)
-
-
-def _between(stops: Array, count: int) -> Array:
-    """Samples of each load between its stops, at which they cluster; shape (loads, m)."""
-    samples = stops[:, :-1, None] + np.diff(stops)[..., None] * _clustered(count)[:-1]
-    return np.concatenate([samples.reshape(len(stops), -1), stops[:, -1:]], axis=1)
-
-
-def _sampled(field: _Field, load: Indices, samples: Array, best: Array) -> _Brackets:
-    """Brackets around samples that may be at the highest peak; the largest goes to `best`.
-
-    A peak is assumed to exceed its sample by at most as much as the sample exceeds the lower of its
-    two neighbours.
-    """
-    values = field(np.repeat(load, samples.shape[1]), samples.ravel()).reshape(samples.shape)
-    best[load] = values.max(axis=1)
-    before = np.concatenate([values[:, :1], values[:, :-1]], axis=1)
-    after = np.concatenate([values[:, 1:], values[:, -1:]], axis=1)
-    reach = 2 * values - np.minimum(before, after)
-    peak = (values >= before) & (values >= after)
-    row, at = np.nonzero(peak & (reach >= best[load][:, None]))
-    last = samples.shape[1] - 1
-    ends = samples[row, np.maximum(at - 1, 0)], samples[row, np.minimum(at + 1, last)]
-    return load[row], *ends
 
 
 def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
