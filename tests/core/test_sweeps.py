@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mdr_core import normal, tangential
+from mdr_core import fields, normal, tangential
 from mdr_core.errors import InputError
 from mdr_core.profiles import (
     CappedParaboloid,
@@ -258,3 +258,17 @@ def test_prescribed_stick_radius_below_a_computed_edge() -> None:
     assert np.array_equal(part.width, expected)
     assert np.array_equal(whole.width[:5], expected)
     assert np.array_equal(whole.tangential_force[:5], part.tangential_force)
+
+
+@pytest.mark.parametrize("field", [fields.pressure, fields.foundation_load])
+def test_fields_of_many_moduli(field: Any) -> None:
+    """The field of each load has its own modulus, also where there are as many radii as loads."""
+    moduli, forces, radii = np.array([1.0, 2.0]), np.array([0.1, 0.3]), [0.0, 0.1]
+    many = field(normal.solve(Paraboloid(1.0), moduli, normal_force=forces), radii)
+    for row, e_star, force in zip(many, moduli, forces, strict=True):
+        depth = (9 * force**2 / (16 * e_star**2)) ** (1 / 3)
+        if field is fields.pressure:
+            expected = 2 * e_star / np.pi * np.sqrt(depth - np.square(radii))
+        else:
+            expected = e_star * (depth - np.square(radii))
+        assert row == pytest.approx(expected, rel=1e-12, abs=0)
