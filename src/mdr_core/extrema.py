@@ -37,11 +37,6 @@ _NINE: Final = np.linspace(0.0, 1.0, 9)
 _CURVED, _PLACES, _DEGREE = 14.0, 600, 7
 
 
-# Intervals of the contact coordinate that may contain the highest peak of a load: index of the
-# load, lower and upper end, all (k,).
-_Brackets = tuple[Indices, Array, Array]
-
-
 def largest_stress(
     profile: Profile, edge: Array, loaded: Flags, slip: tuple[Array, Array] | None = None
 ) -> Array:
@@ -217,18 +212,18 @@ def _search(profile: Profile, edge: Array, *slip: Array, added: _Field | None = 
         )
         row, *place = np.nonzero(np.diff(ends) > 0)
         low, high = (part[row, *place] for part in (ends[..., :-1], ends[..., 1:]))
-        _refine(field, (load[row], low, high), best)
+        _refine(field, load[row], low, high, best)
     return best
 
 
-def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
+def _refine(field: _Field, load: Indices, low: Array, high: Array, best: Array) -> None:
     """Zoom into each bracket around its highest point, and write the top of its peak to `best`.
 
+    A bracket is the index of its load, and both ends in the contact coordinate, all of shape (k,).
     The peak is assumed to exceed the highest of the nine points by at most as much as that point
     exceeds the lowest. A bracket whose peak must stay below `best` is dropped. In the last bracket
     the stress or the place varies by rounding errors.
     """
-    load, low, high = brackets
     for _ in range(MAX_STEPS):
         at = np.clip(low[:, None] + (high - low)[:, None] * _NINE, low[:, None], high[:, None])
         values = field(np.repeat(load, _NINE.size), at.ravel()).reshape(at.shape)
@@ -238,7 +233,7 @@ def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
         rise = top - values.min(axis=1)
         before, after = np.maximum(place - 1, 0), np.minimum(place + 1, _NINE.size - 1)
         low, high = at[rows, before], at[rows, after]
-        left = (rise > _LEAST_STEP * top) & (top + rise > best[load])
+        left = (rise > _LEAST_STEP * np.abs(top)) & (top + rise > best[load])
         left &= high - low > ADJACENT * high
         if not left.any():
             break
