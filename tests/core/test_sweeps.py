@@ -272,3 +272,12 @@ def test_fields_of_many_moduli(field: Any) -> None:
         else:
             expected = e_star * (depth - np.square(radii))
         assert row == pytest.approx(expected, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize("profile", [TruncatedCone(0.05, 0.2), RoundedPunch(0.05, 2.0)])
+def test_foundation_load_of_a_flat_at_the_onset_of_its_load(profile: Profile) -> None:
+    """The springs of the flat carry the whole depth, whether a radius resolves the contact."""
+    depths = np.array([0.0, float(profile.depth(np.float64(1e-30))), 1e-3])
+    contact = normal.solve(profile, 3.0, indentation_depth=depths)
+    load = fields.foundation_load(contact, [0.0, 0.03])
+    assert load == pytest.approx(3.0 * depths[:, None] * np.ones(2), rel=1e-12, abs=0)

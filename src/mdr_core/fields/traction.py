@@ -82,7 +82,8 @@ class Traction(NamedTuple):
         # The springs of a flat carry the load of its edge.
         inside = r < self.radius[-1]
         x = np.maximum(r[inside], self.radius[0])
-        i = np.searchsorted(self.radius, x, side="right") - 1
+        # At the onset of the load the contact radius is that of the flat.
+        i = np.minimum(np.searchsorted(self.radius, x, side="right"), self.slope.size) - 1
         result[inside] = self.above[i]
         inside[inside] = slips = self.slope[i] != 0
         x, i = x[slips], i[slips]
