@@ -135,12 +135,16 @@ class Curve:
 
         nodes, values = self._nodes, height(self._nodes)
         stable = values > 0
-        spreads = np.asarray(not stable[-1] or (stable[0] and values[0] < values[1]))
-        if some(spreads):
-            path, to_end = ("material", "work_of_adhesion"), spreads & (self.end < inf)
-            validation.require_inside(path, to_end, self.allowed, "work of adhesion")
-            reason = "without bound, or its radius at pull-off is not representable"
-            raise InputError(path, f"adhesion spreads the contact {reason}")
+        end = self.end
+        if not stable[-1] or (stable[0] and values[0] < values[1]):
+            words, remedy = self.allowed.end
+            reason = (
+                f"to radius {self.allowed.domain:.6g}, {words}: reduce the work, or {remedy}"
+                if end < np.inf
+                else "without bound, or its radius at pull-off is not representable"
+            )
+            detail = f"adhesion spreads the contact {reason}"
+            raise InputError(("material", "work_of_adhesion"), detail)
         at = np.flatnonzero(stable[1:] != stable[:-1])
         ends = _roots(height, nodes[at], nodes[at + 1])
         first = [0.0] if stable[0] else []
