@@ -20,10 +20,9 @@ from mdr_core.validation import extremes, first_index, require_inside, require_n
 # Stress at radii, given as contact coordinates, under the loads of these indices; all (m,).
 _Field = Callable[[Indices, Array], Array]
 
-# Number of samples between two singular radii, at both of which they cluster. The pressure under
-# the power r^100 has the narrowest smooth peak, next to the contact edge: four samples lie above
-# half its height.
-_SAMPLES: Final = 64
+# Number of brackets between two singular radii, at both of which they cluster. The pressure under
+# the power r^100 has the narrowest smooth peak, next to the contact edge.
+_INTERVALS: Final = 8
 # Relative variation of the stress in the last bracket.
 _LEAST_STEP: Final = 1e-13
 # Relative step of the derivative of a searched maximum, whose own error is about 1e-13.
@@ -36,11 +35,6 @@ _NINE: Final = np.linspace(0.0, 1.0, 9)
 # All contacts of rounded punches are similar. One spline serves them up to this absolute value of
 # log(s/b); its number of places and its degree leave an error of 3e-15.
 _CURVED, _PLACES, _DEGREE = 14.0, 600, 7
-
-
-# Intervals of the contact coordinate that may contain the highest peak of a load: index of the
-# load, lower and upper end, all (k,).
-_Brackets = tuple[Indices, Array, Array]
 
 
 def largest_stress(
@@ -138,7 +132,8 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
 def largest_with(profile: Profile, edge: Array, loaded: Flags, added: _Field) -> Array:
     """Return the largest sum of the stress and of another field, each of a contact [1].
 
-    Where the stress is known to fall from the axis, the other field falls as well.
+    Where the stress is known to fall from the axis, the other field falls as well. Within a flat
+    the sum is largest on the axis or at the edge of the flat.
 
     Parameters
     ----------
@@ -146,20 +141,16 @@ def largest_with(profile: Profile, edge: Array, loaded: Flags, added: _Field) ->
     added : the field, finite, of indices of loads and radii.
     """
     ends, pressed = np.atleast_1d(edge), np.atleast_1d(loaded)
-    falls = pressed & profile.falls_from_axis(ends)
-    infinite = _infinite(profile, ends, pressed & ~falls)
-    found = np.flatnonzero(pressed & ~falls & ~infinite)
-    largest = np.where(infinite, inf, 0.0)
-    axis = added(np.arange(ends.size), np.zeros(ends.size))
-    if falls.any():
-        largest[falls] = profile.axis_stress(ends[falls])
+    infinite = _infinite(profile, ends, pressed)
+    largest = added(np.arange(ends.size), np.zeros(ends.size))
+    largest[infinite], finite = inf, pressed & ~infinite
+    if finite.any():
+        largest[finite] += profile.axis_stress(ends[finite])
+    found = np.flatnonzero(finite & ~profile.falls_from_axis(ends))
     if found.size:
-
-        def above_axis(load: Indices, radius: Array) -> Array:
-            return added(found[load], radius) - axis[found[load]]
-
-        largest[found] = _search(profile, ends[found], added=above_axis)
-    return (largest + axis).reshape(np.shape(edge))[()]
+        others = _search(profile, ends[found], added=lambda i, r: added(found[i], r))
+        largest[found] = np.maximum(largest[found], others)
+    return largest.reshape(np.shape(edge))[()]
 
 
 def _infinite(
@@ -196,8 +187,7 @@ def _curve() -> BSpline:
 def _search(profile: Profile, edge: Array, *slip: Array, added: _Field | None = None) -> Array:
     """The largest stress of contacts with one profile, where it is finite; shape (loads,).
 
-    The stress is sampled between its singular radii. Every candidate for the highest peak is then
-    bracketed more and more closely. `added` is a field that vanishes on the axis.
+    The brackets lie between the singular radii, at which they cluster.
     """
     c = [profile.contact_radius(part) for part in slip[1:]]
 
@@ -208,55 +198,32 @@ def _search(profile: Profile, edge: Array, *slip: Array, added: _Field | None = 
         stress = profile.pressure_kernel_at(annulus, at)
         return stress if added is None else stress + added(load, profile.contact_radius(at))
 
-    best = np.zeros(edge.size)
+    best = np.full(edge.size, -inf)
     fixed = np.append(0.0, profile.coordinate_breaks)
-    count = max(_SAMPLES // max(fixed.size - 1, 1), _NINE.size - 1)
-    for block in in_blocks(edge.size, fixed.size * count):
+    count = max(_INTERVALS // max(fixed.size - 1, 1), 1)
+    for block in in_blocks(edge.size, fixed.size * count * _NINE.size):
         load = np.arange(edge.size)[block]
         same = np.broadcast_to(fixed, (load.size, fixed.size))
         stops = np.concatenate([same, *(part[load, None] for part in (edge, *slip[1:]))], axis=1)
         stops = np.sort(np.clip(stops, fixed[0], edge[load, None]), axis=1)
-        _refine(field, _sampled(field, load, _between(stops, count), best), best)
+        shares = (1 - np.cos(np.pi * np.arange(count + 1) / count)) / 2
+        ends = np.minimum(
+            stops[:, :-1, None] + np.diff(stops)[..., None] * shares, stops[:, 1:, None]
+        )
+        row, *place = np.nonzero(np.diff(ends) > 0)
+        low, high = (part[row, *place] for part in (ends[..., :-1], ends[..., 1:]))
+        _refine(field, load[row], low, high, best)
     return best
 
 
-def _clustered(count: int) -> Array:
-    """Points of [0, 1] that divide it into `count` intervals and cluster at both ends."""
-    return np.asarray((1 - np.cos(np.pi * np.arange(count + 1) / count)) / 2)
-
-
-def _between(stops: Array, count: int) -> Array:
-    """Samples of each load between its stops, at which they cluster; shape (loads, m)."""
-    samples = stops[:, :-1, None] + np.diff(stops)[..., None] * _clustered(count)[:-1]
-    return np.concatenate([samples.reshape(len(stops), -1), stops[:, -1:]], axis=1)
-
-
-def _sampled(field: _Field, load: Indices, samples: Array, best: Array) -> _Brackets:
-    """Brackets around samples that may be at the highest peak; the largest goes to `best`.
-
-    A peak is assumed to exceed its sample by at most as much as the sample exceeds the lower of its
-    two neighbours.
-    """
-    values = field(np.repeat(load, samples.shape[1]), samples.ravel()).reshape(samples.shape)
-    best[load] = values.max(axis=1)
-    before = np.concatenate([values[:, :1], values[:, :-1]], axis=1)
-    after = np.concatenate([values[:, 1:], values[:, -1:]], axis=1)
-    reach = 2 * values - np.minimum(before, after)
-    peak = (values >= before) & (values >= after) & (values > 0)
-    row, at = np.nonzero(peak & (reach >= best[load][:, None]))
-    last = samples.shape[1] - 1
-    ends = samples[row, np.maximum(at - 1, 0)], samples[row, np.minimum(at + 1, last)]
-    return load[row], *ends
-
-
-def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
+def _refine(field: _Field, load: Indices, low: Array, high: Array, best: Array) -> None:
     """Zoom into each bracket around its highest point, and write the top of its peak to `best`.
 
+    A bracket is the index of its load, and both ends in the contact coordinate, all of shape (k,).
     The peak is assumed to exceed the highest of the nine points by at most as much as that point
     exceeds the lowest. A bracket whose peak must stay below `best` is dropped. In the last bracket
     the stress or the place varies by rounding errors.
     """
-    load, low, high = brackets
     for _ in range(MAX_STEPS):
         at = np.clip(low[:, None] + (high - low)[:, None] * _NINE, low[:, None], high[:, None])
         values = field(np.repeat(load, _NINE.size), at.ravel()).reshape(at.shape)
@@ -266,7 +233,7 @@ def _refine(field: _Field, brackets: _Brackets, best: Array) -> None:
         rise = top - values.min(axis=1)
         before, after = np.maximum(place - 1, 0), np.minimum(place + 1, _NINE.size - 1)
         low, high = at[rows, before], at[rows, after]
-        left = (rise > _LEAST_STEP * top) & (top + rise > best[load])
+        left = (rise > _LEAST_STEP * np.abs(top)) & (top + rise > best[load])
         left &= high - low > ADJACENT * high
         if not left.any():
             break

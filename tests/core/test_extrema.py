@@ -9,7 +9,7 @@ from mpmath import mp, mpf
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from mdr_core import fields, normal, tangential
+from mdr_core import adhesion, fields, normal, tangential
 from mdr_core.extrema import largest_stress
 from mdr_core.profiles import (
     Cone,
@@ -317,3 +317,14 @@ def test_maximum_pressure_of_rounded_cones(
         )
         expected = float(E_STAR * mpf(slope) * (2 + flank) / mp.pi)
     assert float(contact.maximum_pressure) == pytest.approx(expected, rel=1e-13, abs=0)
+
+
+@pytest.mark.parametrize("beyond", [1e-5, 1e-3, 0.2])
+def test_largest_pressure_of_an_adhesive_contact_just_beyond_a_flat(beyond: float) -> None:
+    """The tension at the edge outweighs the peak of the pressure, and the axis bears the most."""
+    a = B * (1 + beyond)
+    contact = adhesion.solve(RoundedPunch(B, 2.0), 1.0, 1e-8, contact_radius=a)
+    radii = np.append(np.linspace(0, B, 2001), B + (a - B) * np.linspace(0, 1, 2001)[:-1])
+    sampled = fields.pressure(contact, radii).max()
+    assert float(contact.maximum_pressure) == pytest.approx(sampled, rel=1e-5, abs=0)
+    assert float(contact.maximum_pressure) >= sampled - 1e-12 * abs(sampled)

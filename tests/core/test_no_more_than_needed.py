@@ -14,8 +14,7 @@ import numpy as np
 import pytest
 
 from mdr_core import equivalent_1d, history, normal, tangential
-from mdr_core.fields import normal as normal_fields
-from mdr_core.fields import tangential as tangential_fields
+from mdr_core.fields.traction import Traction
 from mdr_core.history import slip_memory, tractions
 from mdr_core.interval_moments import IntervalMoments
 from mdr_core.profiles import KINDS, Paraboloid, Profile, Sphere, SphericalTipCone
@@ -115,8 +114,7 @@ def test_field_computes_no_other_field(kind: str) -> None:
         field("pressure", tangential_contact)
         field("shear_stress", tangential_contact)
     with (
-        patch.object(normal_fields, "stress", never),
-        patch.object(tangential_fields, "stress", never),
+        patch.object(Traction, "stress", never),
         patch.object(type(tangential_contact.normal.profile), "reduced_energy", never),
     ):
         field("slip", tangential_contact)
@@ -218,8 +216,7 @@ def test_shear_stress_needs_no_slip(quantities: list[str]) -> None:
 
 def test_slip_needs_no_stress() -> None:
     with (
-        patch.object(normal_fields, "stress", never),
-        patch.object(tangential_fields, "stress", never),
+        patch.object(Traction, "stress", never),
     ):
         answer = run_stress(quantities=["slip"], **LOADED)
     assert "pressure" not in answer

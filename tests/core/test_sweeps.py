@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mdr_core import normal, tangential
+from mdr_core import fields, normal, tangential
 from mdr_core.errors import InputError
 from mdr_core.profiles import (
     CappedParaboloid,
@@ -258,3 +258,26 @@ def test_prescribed_stick_radius_below_a_computed_edge() -> None:
     assert np.array_equal(part.width, expected)
     assert np.array_equal(whole.width[:5], expected)
     assert np.array_equal(whole.tangential_force[:5], part.tangential_force)
+
+
+@pytest.mark.parametrize("field", [fields.pressure, fields.foundation_load])
+def test_fields_of_many_moduli(field: Any) -> None:
+    """The field of each load has its own modulus, also where there are as many radii as loads."""
+    moduli, forces, radii = np.array([1.0, 2.0]), np.array([0.1, 0.3]), [0.0, 0.1]
+    many = field(normal.solve(Paraboloid(1.0), moduli, normal_force=forces), radii)
+    for row, e_star, force in zip(many, moduli, forces, strict=True):
+        depth = (9 * force**2 / (16 * e_star**2)) ** (1 / 3)
+        if field is fields.pressure:
+            expected = 2 * e_star / np.pi * np.sqrt(depth - np.square(radii))
+        else:
+            expected = e_star * (depth - np.square(radii))
+        assert row == pytest.approx(expected, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize("profile", [TruncatedCone(0.05, 0.2), RoundedPunch(0.05, 2.0)])
+def test_foundation_load_of_a_flat_at_the_onset_of_its_load(profile: Profile) -> None:
+    """The springs of the flat carry the whole depth, whether a radius resolves the contact."""
+    depths = np.array([0.0, float(profile.depth(np.float64(1e-30))), 1e-3])
+    contact = normal.solve(profile, 3.0, indentation_depth=depths)
+    load = fields.foundation_load(contact, [0.0, 0.03])
+    assert load == pytest.approx(3.0 * depths[:, None] * np.ones(2), rel=1e-12, abs=0)

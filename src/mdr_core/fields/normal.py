@@ -4,31 +4,20 @@ Every function returns an array of shape (loads, radii), or (radii,) if the load
 """
 
 from collections.abc import Callable
-from math import inf, prod
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import equivalent_1d
-from mdr_core.abel.annulus import Annulus, whole
 from mdr_core.adhesion import AdhesiveContact
-from mdr_core.elementwise import every, number
+from mdr_core.fields.traction import by_load, fill, over_loads
 from mdr_core.layer import LayerContact
 from mdr_core.normal import NormalContact
-from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Indices
-from mdr_core.validation import (
-    checked_radii,
-    require_single_profile,
-    require_type,
-)
+from mdr_core.validation import require_type
 
 Contact = NormalContact | TangentialContact
 """A contact with or without tangential load, which does not affect the normal fields."""
-# Values of a field under the load of this index, at some radii.
-Field = Callable[[int, Array], Array]
 
 
 def pressure(contact: Contact, radius: ArrayLike) -> Array:
@@ -70,16 +59,7 @@ def pressure(contact: Contact, radius: ArrayLike) -> Array:
     if isinstance(contact, LayerContact):
         beyond = _beyond_half_space(contact, contact.correction, radius)
         return pressure(contact.half_space, radius) + beyond
-    contact = _pressed(contact)
-    shape = contact.contact_radius.shape
-    a, coordinate = by_load(contact.profile, shape, contact.contact_radius, contact.coordinate)
-
-    def values(load: int, r: Array) -> Array:
-        edge = number(a[load]) if contact.control == "contact_radius" else None
-        annulus = whole(number(coordinate[load]), edge)
-        return contact.e_star * stress(contact.profile, annulus, a[load], r)
-
-    return fill(shape, values, radius)
+    return over_loads(_pressed(contact), lambda load, r: load.modulus * load.stress(r), radius)
 
 
 def normal_displacement(contact: Contact, radius: ArrayLike) -> Array:
@@ -149,14 +129,7 @@ def foundation_load(contact: Contact, radius: ArrayLike) -> Array:
     if isinstance(contact, LayerContact):
         beyond = _beyond_half_space(contact, contact.load_correction, radius)
         return foundation_load(contact.half_space, radius) + beyond
-    contact = _pressed(contact)
-    shape = contact.contact_radius.shape
-    a, coordinate = by_load(contact.profile, shape, contact.contact_radius, contact.coordinate)
-
-    def values(load: int, r: Array) -> Array:
-        return contact.e_star * _depth_left(contact.profile, a[load], coordinate[load], r)
-
-    return fill(shape, values, radius)
+    return over_loads(_pressed(contact), lambda load, r: load.modulus * load.foundation(r), radius)
 
 
 def _beyond_half_space(
@@ -177,59 +150,3 @@ def _pressed(contact: Contact) -> NormalContact:
     needed = "a contact from normal.solve or tangential.solve"
     require_type("contact", contact, (NormalContact, TangentialContact), needed)
     return contact.normal
-
-
-def fill(shape: tuple[int, ...], field: Field, radius: ArrayLike) -> Array:
-    """Return the field of every load at all radii; `field` returns the field of one load.
-
-    Raises InputError if there is no radius, or one that is negative or not finite.
-    """
-    r = checked_radii(radius)
-    return np.array([field(load, r) for load in range(prod(shape))]).reshape(shape + r.shape)
-
-
-def stress(profile: Profile, annulus: Annulus, a: float, r: Array) -> Array:
-    """Return (1/pi) int_max(r,c)^a g'(x)/sqrt(x^2 - r^2) dx at all radii, zero outside [1].
-
-    Parameters
-    ----------
-    profile : one profile.
-    annulus : annulus from c to a in the contact coordinate.
-    a : contact radius [length].
-    r : radii [length], shape (m,).
-    """
-    inside = r < a
-    if every(inside):
-        # Most radii of a query are inside the contact, and selecting them takes as long as a closed
-        # form.
-        return profile.pressure_kernel(annulus, r)
-    result = np.zeros(r.shape)
-    if inside.any():
-        result[inside] = profile.pressure_kernel(annulus, r[inside])
-    if profile.is_flat_punch and annulus.outer > 0:
-        # The stress is infinite at the edge of a flat punch.
-        result[r == a] = inf
-    return result
-
-
-def by_load(profile: Profile, shape: tuple[int, ...], *columns: Any) -> list[list[float]]:
-    """Return the values of each column under every load.
-
-    Raises InputError if a parameter of the profile is an array.
-    """
-    require_single_profile(profile.swept)
-    return [np.broadcast_to(column, shape).ravel().tolist() for column in columns]
-
-
-def _depth_left(profile: Profile, a: float, coordinate: float, r: Array) -> Array:
-    """d - g(r), as the step from r to a, which is free of cancellation near the edge [length]."""
-    result = np.zeros(r.shape)
-    inside = r < a
-    if profile.is_flat_punch:
-        result[r <= a] = coordinate
-    elif inside.any():
-        least = float(profile.first_radius)
-        x, top = np.maximum(r[inside], least), np.array([coordinate])
-        at = profile.coordinate_from_radius(x)
-        result[inside] = equivalent_1d.depth_step(profile, top, a - x, at)
-    return result

@@ -38,7 +38,8 @@ class Edges(NamedTuple):
     error: Array
     """Rounding errors of the radii [length]."""
     scale: Array
-    """Distance over which a stress changes next to the edge [length]."""
+    """Distance over which a stress changes next to the edge [length]; infinite where the stress is
+    that of adhesion, 1/sqrt(distance)."""
     reach: Array
     """Distance over which a displacement changes next to the edge [length]."""
 
@@ -56,7 +57,7 @@ def edges(contact: Contact | ContactState) -> Edges:
     needed = "a contact, or the state of a load history"
     if isinstance(contact, AdhesiveContact):
         a = np.ravel(contact.contact_radius)
-        return Edges(a, a * np.ravel(contact.edge_errors), 0 * a, 0 * a)
+        return Edges(a, a * np.ravel(contact.edge_errors), np.full_like(a, inf), a)
     if not isinstance(contact, LayerContact):
         require_type("contact", contact, get_args(Contact), needed)
     normal = contact.normal
@@ -111,8 +112,6 @@ def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) ->
     stress = name in ("pressure", "shear_stress")
     radius = np.atleast_1d(np.asarray(radius, dtype=float))
     known = edges(contact)
-    if isinstance(contact, AdhesiveContact):
-        return rim_error(known, radius[:, None] - known.radius)
     if name == "slip":
         # It grows as (r - c)^(3/2) from a front, and radii next to c alone have little of it.
         count, reach = known.radius.size, known.reach.copy()
@@ -121,17 +120,6 @@ def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) ->
         reach[fronts] = where(beyond > 0, np.minimum(reach[fronts], beyond), inf)
         known = known._replace(reach=reach)
     return error_near(known, radius, root=stress)
-
-
-def rim_error(edges: Edges, distance: Array) -> float:
-    """Return the error of a stress 1/sqrt(distance), for (m, k) distances from edges [1].
-
-    The error is relative to the local stress. Points within four units in the last place of an edge
-    are excluded.
-    """
-    gap = np.abs(distance)
-    gap = np.where(gap > edges.radius * ADJACENT, gap, inf)
-    return float((edges.error / gap).max())
 
 
 def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
@@ -151,7 +139,9 @@ def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
     below = at - r[r.searchsorted(at - away) - 1]
     above = r[r.searchsorted(at + away, side="right")] - at
     nearest = np.minimum(below, where(above <= error, above, inf))
-    return float((error / (2 * np.sqrt(nearest * scale))).max())
+    # Next to an infinite stress the error is relative to the local stress.
+    size = where(scale < inf, 2 * np.sqrt(nearest * scale), nearest)
+    return float((error / size).max())
 
 
 def own_error(contact: NormalContact | TangentialContact | LoadHistory) -> float:

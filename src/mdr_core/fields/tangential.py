@@ -1,75 +1,16 @@
-"""Tangential fields of a contact or at the end of a load history: sums over annuli.
+"""Tangential fields of a contact or at the end of a load history: sums over annuli."""
 
-Between two neighbouring slip fronts dq_x/dq = mu k, k the slope of the anchors: 0 where the springs
-stick under a monotonic load, 1 where they slip. The stress is therefore a sum of kernels, each over
-the annulus between two fronts.
-"""
-
-from collections.abc import Callable
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import equivalent_1d
-from mdr_core.abel.annulus import Annulus
 from mdr_core.doubles import ADJACENT
-from mdr_core.fields.normal import by_load, fill, stress
+from mdr_core.fields.traction import Traction, over_loads
 from mdr_core.history import ContactState
-from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
 from mdr_core.validation import require_type
-
-
-class Traction(NamedTuple):
-    """Annuli of a contact under one load, from the axis, each with one slope of the anchors."""
-
-    profile: Profile
-    e_star: float
-    modulus: float
-    """mu E* [pressure]."""
-    ratio: float
-    """mu E*/G* [1]."""
-    coordinate: Array
-    """Contact coordinates of the ends of the annuli, shape (n + 1,)."""
-    radius: Array
-    """Radii of the ends of the annuli [length], shape (n + 1,)."""
-    width: Array
-    """Widths in the contact coordinate, shape (n,). The coordinate of a flat punch is its depth,
-    and all its springs carry the load of a depth `width`."""
-    slope: Array
-    """Slope k of the anchors in each annulus [1], shape (n,)."""
-    above: Array
-    """q_x/(mu E*) at the outer end of each annulus [length], shape (n,)."""
-    exact: bool = False
-    """True if the contact radius is prescribed."""
-    excess: float = 0.0
-    """Displacement beyond full slip [length]."""
-
-    def annulus(self, i: int) -> Annulus:
-        """Return the i-th annulus."""
-        outer = self.radius[i + 1] if self.exact else None
-        coordinate = self.coordinate[i : i + 2]
-        return Annulus(coordinate[1], self.width[i], self.radius[i], outer, coordinate[0])
-
-    def stress(self, r: Array) -> Array:
-        """Return the stress at radii, over mu E* [1], shape (m,)."""
-        result = np.zeros(r.shape)
-        for i in np.flatnonzero(self.slope).tolist():
-            a = float(self.radius[i + 1])
-            result += self.slope[i] * stress(self.profile, self.annulus(i), a, r)
-        return result
-
-    def step(self, i: int, x: Array) -> Array:
-        """Return the growth of q_x/(mu E*) from the outer end of the i-th annulus to x [length]."""
-        if not self.slope[i]:
-            return np.zeros(x.shape)
-        at = np.maximum(self.profile.coordinate_from_radius(x), self.coordinate[i])
-        x, top = np.maximum(x, self.radius[i]), np.maximum(self.coordinate[i + 1], at)
-        width = np.where(at == self.coordinate[i], self.width[i], self.radius[i + 1] - x)
-        return self.slope[i] * equivalent_1d.depth_step(self.profile, top, width, at)
 
 
 def shear_stress(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
@@ -108,7 +49,8 @@ def shear_stress(contact: TangentialContact | ContactState, radius: ArrayLike) -
     >>> bool(abs(shear_stress(history.state, [0.0])[0] / (0.05 * np.log(1 / c)) - 1) < 1e-13)
     True
     """
-    return _fill(contact, lambda load, r: load.modulus * load.stress(r), radius)
+    _require_shear(contact)
+    return over_loads(contact, lambda load, r: load.modulus * load.stress(r), radius)
 
 
 def slip(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
@@ -155,7 +97,8 @@ def slip(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
         result[inside] -= load.excess
         return result
 
-    return _fill(contact, values, radius)
+    _require_shear(contact)
+    return over_loads(contact, values, radius)
 
 
 def foundation_shear(contact: TangentialContact | ContactState, radius: ArrayLike) -> Array:
@@ -179,94 +122,11 @@ def foundation_shear(contact: TangentialContact | ContactState, radius: ArrayLik
     ------
     InputError : a radius that is negative or not finite, or an array as a parameter of the profile.
     """
-
-    def values(load: Traction, r: Array) -> Array:
-        profile, result = load.profile, np.zeros(r.shape)
-        if profile.is_flat_punch:
-            # All springs carry the same load.
-            result[r <= load.radius[-1]] = load.modulus * (load.slope @ load.width)
-            return result
-        # The springs of a flat carry the load of its edge.
-        inside = r < load.radius[-1]
-        x = np.maximum(r[inside], load.radius[0])
-        total = np.zeros(x.shape)
-        for i, above in enumerate(load.above.tolist()):
-            here = (load.radius[i] <= x) & (x < load.radius[i + 1])
-            total[here] = above + load.step(i, x[here])
-        result[inside] = load.modulus * total
-        return result
-
-    return _fill(contact, values, radius)
+    _require_shear(contact)
+    return over_loads(contact, lambda load, r: load.modulus * load.foundation(r), radius)
 
 
-def _fill(
-    contact: TangentialContact | ContactState,
-    field: Callable[[Traction, Array], Array],
-    radius: ArrayLike,
-) -> Array:
-    """Field of every load at all radii."""
-    shape, traction = tractions(contact)
-    return fill(shape, lambda load, r: field(traction(load), r), radius)
-
-
-def tractions(
-    contact: TangentialContact | ContactState,
-) -> tuple[tuple[int, ...], Callable[[int], Traction]]:
-    """Return the shape of the loads, and the traction under the load of an index."""
+def _require_shear(contact: TangentialContact | ContactState) -> None:
+    """Raise InputError unless a contact has a tangential load."""
     needed = "a contact from tangential.solve, or the state of a load history"
     require_type("contact", contact, (TangentialContact, ContactState), needed)
-    if isinstance(contact, ContactState):
-        traction = _at_end(contact)
-        return (), lambda _load: traction
-    return contact.width.shape, _of_loads(contact)
-
-
-def _at_end(state: ContactState) -> Traction:
-    """Traction at the end of a load history."""
-    profile = state.profile
-    modulus = state.friction_coefficient * state.e_star
-    known = profile, state.e_star, modulus, state.displacement_ratio
-    if not state.in_contact:
-        ends, nothing = np.zeros(1), np.zeros(0)
-        return Traction(*known, ends, ends, nothing, nothing, nothing)
-    if profile.is_flat_punch:
-        depth = state.load[:1] / modulus
-        ends = np.append(0.0, state.coordinate[-1])
-        rows = profile.contact_radius(ends), np.abs(depth), np.sign(depth), 0 * depth
-        return Traction(*known, ends, *rows)
-    radius, width = profile.contact_radius(state.coordinate), np.diff(state.coordinate)
-    return Traction(*known, state.coordinate, radius, width, state.slope, state.load[1:] / modulus)
-
-
-def _of_loads(contact: TangentialContact) -> Callable[[int], Traction]:
-    """Traction under the load of an index."""
-    normal, profile = contact.normal, contact.normal.profile
-    modulus = contact.friction_coefficient * normal.e_star
-    columns = by_load(
-        profile,
-        contact.width.shape,
-        *(normal.e_star, modulus, contact.displacement_ratio),
-        *(normal.coordinate, normal.contact_radius),
-        *(contact.stick_coordinate, contact.stick_radius, contact.width),
-        *(contact.sign, contact.full_slip, contact.sign * contact.excess),
-        contact.tangential_displacement / contact.displacement_ratio,
-    )
-    flat = float(profile.first_radius)
-    exact = normal.control == "contact_radius"
-
-    def traction(load: int) -> Traction:
-        e_star, mu_e, ratio, *places, sign, slides, excess, moved = (part[load] for part in columns)
-        top, a, edge, c, width = places
-        ends, radii, widths, slopes, above = [0.0, top], [flat, a], [top], [0.0], [0.0]
-        if profile.is_flat_punch:
-            widths = [top if slides else width]
-            slopes = [sign if widths[0] > 0 else 0.0]
-        elif slides:
-            slopes = [sign]
-        elif width > 0:
-            ends, radii = [0.0, edge, top], [flat, c, a]
-            widths, slopes, above = [edge, width], [0.0, sign], [moved, 0.0]
-        parts = np.array(ends), np.array(radii), np.array(widths), np.array(slopes), np.array(above)
-        return Traction(profile, e_star, mu_e, ratio, *parts, exact=exact, excess=excess)
-
-    return traction

@@ -5,7 +5,8 @@ from numpy.typing import ArrayLike
 
 from mdr_core.abel.annulus import Annulus
 from mdr_core.abel.stress import stress_integral
-from mdr_core.fields.normal import by_load, fill, pressure
+from mdr_core.fields.normal import pressure
+from mdr_core.fields.traction import by_load, fill
 from mdr_core.torsion import TorsionalContact
 from mdr_core.torsion.curve import VirginCurves
 from mdr_core.typing import Array

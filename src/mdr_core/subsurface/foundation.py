@@ -22,7 +22,7 @@ from mdr_core.abel.displacement import Branch
 from mdr_core.doubles import EPS
 from mdr_core.elementwise import in_blocks
 from mdr_core.errors import InputError
-from mdr_core.fields.tangential import Traction, tractions
+from mdr_core.fields.traction import Traction, tractions
 from mdr_core.history import ContactState
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Cone, Paraboloid

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from mdr_core import fields
 from mdr_core.adhesion import AdhesiveContact
 from mdr_core.doubles import EPS
-from mdr_core.fields.radii import Edges, error_near, rim_error
+from mdr_core.fields.radii import Edges, error_near
 from mdr_core.history import ContactState
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
 from mdr_core.typing import Array, Numbers
@@ -185,9 +185,6 @@ def error_estimate(contact: Contact, x: ArrayLike, y: ArrayLike, z: ArrayLike) -
     """
     r, z = map(np.ravel, np.broadcast_arrays(np.hypot(x, y), z))
     known, near = fields.edges(contact), 0.0
-    if isinstance(contact, AdhesiveContact):
-        away = np.hypot(np.subtract.outer(r, known.radius), z[:, None])
-        return MOMENT_ERROR + rim_error(known, away) + 4 * contact.error_estimate
     for i, at in enumerate(known.radius):
         edge = Edges(*(part[i : i + 1] for part in known))
         near = max(near, error_near(edge, at - np.hypot(r - at, z), root=True))

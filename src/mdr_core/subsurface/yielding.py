@@ -217,8 +217,8 @@ def _onset(
 ) -> float:
     """Normal force at which the largest stress is `limit`, in the ratio of the forces of a case.
 
-    Secant steps in the logarithms, which are nearly in proportion, and chords where they leave the
-    bracket. The error after two secant steps is of the order of their product.
+    Secant steps in the logarithms, which are nearly in proportion, and bisections where they leave
+    the bracket. The error after two secant steps is of the order of their product.
     """
     force, ratio, _, e_star, *_ = case
     at = cache(lambda load: _under(profile, exp(load), *case[1:]))
@@ -232,15 +232,13 @@ def _onset(
     last = one.largest_loads[1]
     # Nearer the edge of a flat the stress beneath it no longer depends on the load.
     least = e_star * float(one.reduced_force(number(_RESOLVED * one.first_radius)))
-    lowest = low = max(log(force) - _REACH, log(least) + _RTOL if least > 0 else -inf)
-    highest = high = min(log(force) + _REACH, log(min(singular, e_star * last)) - _RTOL)
+    lowest = max(log(force) - _REACH, log(least) + _RTOL if least > 0 else -inf)
+    highest = min(log(force) + _REACH, log(min(singular, e_star * last)) - _RTOL)
     load = max(min(log(force), highest), lowest)
     # The first step takes the stress to grow like the mean pressure, which is exact for powers.
     means = [at(each).normal.mean_pressure for each in (load, load - _RTOL)]
     slope = log(means[0] / means[1]) / _RTOL
-    # The excess at both ends of the bracket and at the load before, zero where it is not known.
-    below = above = excess = 0.0
-    before = load
+    low, high, excess, before = -inf, inf, 0.0, load
     for _ in range(MAX_STEPS):
         value = _peak(foundations(at(load), body)[0][0], measure, nu)[0]
         found = min(max(log(max(value, TINY) / limit), -_REACH), _REACH)
@@ -248,18 +246,14 @@ def _onset(
             return 0.0
         if load == highest and found < 0:
             return singular
-        # An end that stays counts half in the next chord (Illinois).
-        if found > 0:
-            high, above, below = load, found, below / 2
-        else:
-            low, below, above = load, found, above / 2
+        low, high = (low, load) if found > 0 else (load, high)
         slope = (found - excess) / (load - before) if load != before else slope
         step, last = -found / max(slope, 1 / _REACH), load - before
         if step == 0 or (excess and abs(step * last) <= _RTOL):
             return exp(min(max(load + step, lowest), highest))
-        before, excess, load = load, found, min(max(load + step, low), high)
-        if load in (low, high) and below and above:
-            load = (low * above - high * below) / (above - below)
+        before, excess, load = load, found, min(max(load + step, lowest), highest)
+        if not low < load < high:
+            load = (low + high) / 2
     raise DefectError("the search for the onset of yield did not converge")
 
 
