@@ -109,13 +109,10 @@ class WearEvolution(validity.ContactResults, WornSurface):
         """Relative error of the wear in the first cycle, by its friction work [1]."""
         initial = self.initial
         state = AnnulusState(initial, initial.vector[:, None])
-        per_cycle = (
-            4 * initial.wear_coefficient * float(self.tangential_contact.friction_coefficient)
-        )
-        per_cycle *= float(self.normal.e_star) * float(self.tangential_contact.displacement_ratio)
-        worn = 2 * np.pi * state.end**3 * (initial.maps.volume @ (state.stress * state.slip))
-        work = 4 * initial.wear_coefficient * float(self.tangential_contact.dissipated_energy)
-        return float(np.abs(per_cycle * worn / work - 1).max())
+        slipped = 2 * np.pi * state.end**3 * (initial.maps.volume @ (state.stress * state.slip))
+        contact = self.tangential_contact
+        friction = contact.friction_coefficient * self.normal.e_star * contact.displacement_ratio
+        return float(np.abs(friction * slipped / contact.dissipated_energy - 1).max())
 
     @property
     def _whole_force(self) -> Array:

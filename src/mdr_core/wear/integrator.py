@@ -146,13 +146,12 @@ def _require_all_cycles(
 
 def _scale(initial: InitialState) -> Array:
     """Return the sizes of the changes of the vector by wear."""
-    found = np.full(initial.units.size, initial.length_unit / float(initial.normal.contact_radius))
     inner = initial.maps.squares.size - 1
-    start = AnnulusState(initial, initial.vector[:, None])
-    slip = (start.slip[:-1] / initial.units[:inner])[:, 0]
+    slip = AnnulusState(initial, initial.vector[:, None]).slip[:-1] / initial.units[:inner]
+    found = np.full(initial.units.size, initial.length_unit / float(initial.normal.contact_radius))
+    found[:inner] = np.maximum(slip[:, 0], _LEAST_SLIP)
     # In full slip the depth that can wear off is a part of the slip.
     found *= initial.step / initial.depth_unit
-    found[:inner] = initial.step / initial.depth_unit * np.maximum(slip, _LEAST_SLIP)
     # In a narrow annulus all but b change by a part b_0/a_0 only.
     found[inner] = 1.0
     return found

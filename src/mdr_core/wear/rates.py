@@ -169,8 +169,10 @@ class _MovingAnnulus(AnnulusState):
         if self.initial.constant_force or self.initial.stick_shrinks:
             rows.append(self._carried_force)
         if self.initial.stick_grows:
-            worn_slope = self.x[0] * self.worn_omega[0] / self.offset[0]
-            rows.append(np.array([0 * worn_slope, 0 * worn_slope, worn_slope, -1 + 0 * worn_slope]))
+            row = np.zeros((4, self.end.size))
+            row[_STICK] = self.x[0] * self.worn_omega[0] / self.offset[0]
+            row[_RETAINED] = -1.0
+            rows.append(row)
         return np.array(rows)
 
     @cached_property
