@@ -164,10 +164,10 @@ class _MovingAnnulus(AnnulusState):
 
     @cached_property
     def conditions(self) -> Array:
-        """Rates that are zero, for each edge that moves, (m, 4, k)."""
+        """Rates that are zero, of depths, for each edge that moves, (m, 4, k)."""
         rows = [self._outer_edge]
         if self.initial.constant_force or self.initial.stick_shrinks:
-            rows.append(self._carried_force)
+            rows.append(self._carried_force / self.initial.length_unit)
         if self.initial.stick_grows:
             row = np.zeros((4, self.end.size))
             row[_STICK] = self.x[0] * self.worn_omega[0] / self.offset[0]
@@ -258,6 +258,7 @@ class _MovingAnnulus(AnnulusState):
             rows.append(-b * b * (mean @ direct) - 2 * b * end * mean)
             if initial.full_slip:
                 rows[-1] += _RETURN * (b * b) * (last - mean)
+            rows[-1] /= initial.length_unit
         if initial.stick_grows:
             rows.append(stick * self.x[0] / self.offset[0] * maps.from_slip[0])
         edges = np.zeros((4, len(direct)))
