@@ -84,8 +84,7 @@ class InitialState:
     @cached_property
     def length_unit(self) -> float:
         """b_0 = sqrt(a_0^2 - c_0^2) [length]."""
-        width = float(self.tangential_contact.slip_width)
-        return float(np.sqrt(width * (2 * float(self.tangential_contact.stick_radius) + width)))
+        return float(np.sqrt(self.width * (2 * self.stick + self.width)))
 
     @cached_property
     def depth_unit(self) -> float:
