@@ -59,7 +59,7 @@ class WornSurface(AnnulusState):
         """Friction work V/K of all cycles so far, by the law of wear [force length]."""
         return self.worn_volume / self.initial.wear_coefficient
 
-    @property
+    @cached_property
     def _passed(self) -> tuple[Array, Array]:
         """Middle radii of the intervals of the trail, and the steps of w_c over them."""
         radius, worn = self.trail
@@ -166,7 +166,7 @@ class WornSurface(AnnulusState):
 
         Source: mdr-5, Eqs. (5.34), (5.79).
         """
-        maps, gamma = self.initial.maps, self.gamma[:, row]
+        maps, gamma = self.initial.maps, self.gamma[:, row].copy()
         inner = inverse_hypot(self.stick_radius[row], radius)
         places = np.add.outer(inner**2, self.end[row] ** 2 * maps.points)
         total = (1 / np.sqrt(places)) @ (maps.steps @ gamma)
