@@ -26,7 +26,6 @@ from mdr_core.profiles import (
 from mdr_core.wear import evolution
 from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.integrator import integrate
-from mdr_core.wear.worn_surface import WornSurface
 
 if TYPE_CHECKING:
     from mdr_core.tangential import TangentialContact
@@ -150,7 +149,7 @@ def fine_over_break(name: str, nodes: int = FINE_NODES) -> dict[str, np.ndarray]
     """Scalars, and fields at `RADII`, of `BREAKS` on very many nodes."""
     initial = InitialState(before_wear(name), WEAR, nodes)
     cycles = np.array([initial.cycle_unit * BREAKS[name].cycles])
-    run = WornSurface(initial, cycles, *integrate(initial, cycles, 1e-7))
+    run = integrate(initial, cycles, 1e-7)
     result = {scalar: np.asarray(getattr(run, scalar)) for scalar in evolution.SCALARS}
     radius = RADII * run.contact_radius.max()
     return result | {field: getattr(run, field)(radius) for field in evolution.FIELDS}

@@ -38,7 +38,7 @@ class AnnulusMaps:
     """
 
     squares: Array
-    """z_j, (n,)."""
+    """z_j, (n, 1)."""
     cosine: Array
     """cos(theta_j): a pressure is an even function about the contact's edge times this, (n,)."""
     to_slip: Array
@@ -117,7 +117,7 @@ def annulus_maps(nodes: int, *, full_slip: bool = False) -> AnnulusMaps:
         for side in (lean, -lean)
     )
     found = AnnulusMaps(
-        squares=squares,
+        squares=squares[:, None],
         cosine=np.cos(theta),
         to_slip=to_slip,
         from_slip=np.asarray(np.linalg.inv(to_slip)),

@@ -100,19 +100,19 @@ class WearEvolution(validity.ContactResults, WornSurface):
             size = self._whole_force if name == "normal_force" else value
             worst = max(worst, float((np.abs(value - other) / np.where(size, size, 1.0)).max()))
         # The errors of two integrations may be equal.
-        tolerance = _LOOSER * self.rtol if self.states else 0.0
-        first = self._first_cycle_error if self._has_break and self.states else 0.0
+        tolerance = _LOOSER * self.rtol if self.initial.slips else 0.0
+        first = self._first_cycle_error if self._has_break and self.initial.slips else 0.0
         return _SAFETY * worst + tolerance + first + self.tangential_contact.error_estimate
 
     @property
     def _first_cycle_error(self) -> float:
         """Relative error of the wear in the first cycle, by its friction work [1]."""
         initial = self.initial
-        state = AnnulusState.of(initial, initial.vector)
-        worn = 2 * np.pi * float(initial.maps.volume @ (state.pressure * state.slip))
-        worn *= initial.depth_unit * initial.length_unit**2
-        work = 4 * float(self.tangential_contact.dissipated_energy) * initial.cycle_unit
-        return abs(worn / (initial.wear_coefficient * work) - 1)
+        state = AnnulusState(initial, initial.vector[:, None])
+        slipped = 2 * np.pi * state.end**3 * (initial.maps.volume @ (state.stress * state.slip))
+        contact = self.tangential_contact
+        friction = contact.friction_coefficient * self.normal.e_star * contact.displacement_ratio
+        return float(np.abs(friction * slipped / contact.dissipated_energy - 1).max())
 
     @property
     def _whole_force(self) -> Array:
@@ -313,9 +313,8 @@ def solve(
     numbers, nodes = _checked_cycles(cycles), int(resolution) + _EXTRA_NODES
     initial = InitialState(tangential_contact, float(wear_coefficient), nodes)
     coarser = replace(initial, nodes=int(nodes * _COARSER))
-    parts = integrate(initial, numbers, rtol)
-    other = WornSurface(coarser, numbers, *integrate(coarser, numbers, _LOOSER * rtol))
-    found = WearEvolution(initial, numbers, *parts, coarse=other, rtol=rtol)
+    run, other = integrate(initial, numbers, rtol), integrate(coarser, numbers, _LOOSER * rtol)
+    found = WearEvolution(**vars(run), coarse=other, rtol=rtol)
     if not found.error_estimate < UNRESOLVED:
         detail = "the worn annulus is not resolved: more nodes may resolve it"
         raise AccuracyError(detail, ("resolution",))

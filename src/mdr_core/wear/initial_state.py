@@ -1,7 +1,7 @@
 """Partial slip before the first cycle: constant quantities, units, and the unworn shape.
 
-In the equations of wear lengths along the surface are in units of b_0 = sqrt(a_0^2 - c_0^2), depths
-in units of D_0 = d_0 - g_0(c_0), cycles in units of b_0/(kappa E* D_0), kappa = 4 K mu^2 E*/G*.
+The integrator takes lengths along the surface in units of b_0 = sqrt(a_0^2 - c_0^2), depths in
+units of D_0 = d_0 - g_0(c_0), and cycles in units of b_0/(kappa E* D_0), kappa = 4 K mu^2 E*/G*.
 """
 
 from dataclasses import dataclass
@@ -41,7 +41,7 @@ class InitialState:
         """Normal contact before wear."""
         return self.tangential_contact.normal
 
-    @property
+    @cached_property
     def slips(self) -> bool:
         """True if there is a loaded slip annulus, and so wear."""
         return float(self.tangential_contact.slip_width) > 0 and float(self.normal.normal_force) > 0
@@ -66,17 +66,17 @@ class InitialState:
             return not self.constant_force
         return self.tangential_contact.control == "tangential_displacement"
 
-    @property
+    @cached_property
     def stick_grows(self) -> bool:
         """True if the growing depth moves the stick edge outwards, over worn material."""
-        return self.constant_force and self.constant_displacement
+        return self.slips and self.constant_force and self.constant_displacement
 
-    @property
+    @cached_property
     def stick_shrinks(self) -> bool:
         """True if the falling normal force moves the stick edge inwards, over unworn material."""
         return not (self.constant_force or self.constant_displacement)
 
-    @property
+    @cached_property
     def stick_moves(self) -> bool:
         """True if the stick edge moves."""
         return self.constant_force == self.constant_displacement
@@ -84,8 +84,7 @@ class InitialState:
     @cached_property
     def length_unit(self) -> float:
         """b_0 = sqrt(a_0^2 - c_0^2) [length]."""
-        width = float(self.tangential_contact.slip_width)
-        return float(np.sqrt(width * (2 * float(self.tangential_contact.stick_radius) + width)))
+        return float(np.sqrt(self.width * (2 * self.stick + self.width)))
 
     @cached_property
     def depth_unit(self) -> float:
@@ -95,8 +94,8 @@ class InitialState:
 
     @cached_property
     def step(self) -> float:
-        """gamma(a) before wear [D_0]: that of full slip is the depth."""
-        return float(self.normal.indentation_depth) / self.depth_unit if self.full_slip else 1.0
+        """gamma(a) before wear [length]: that of full slip is the depth."""
+        return float(self.normal.indentation_depth) if self.full_slip else self.depth_unit
 
     @cached_property
     def cycle_unit(self) -> float:
@@ -108,13 +107,13 @@ class InitialState:
 
     @cached_property
     def stick(self) -> float:
-        """c_0 [b_0]."""
-        return float(self.tangential_contact.stick_radius) / self.length_unit
+        """c_0 [length]."""
+        return float(self.tangential_contact.stick_radius)
 
     @cached_property
     def width(self) -> float:
-        """a_0 - c_0 [b_0]."""
-        return float(self.tangential_contact.slip_width) / self.length_unit
+        """a_0 - c_0 [length]."""
+        return float(self.tangential_contact.slip_width)
 
     @cached_property
     def domain(self) -> float:
@@ -123,12 +122,12 @@ class InitialState:
 
     @cached_property
     def growth_to_end(self) -> float:
-        """Growth at which the contact reaches the profile's end [b_0]."""
-        return (self.domain - float(self.normal.contact_radius)) / self.length_unit
+        """Growth at which the contact reaches the profile's end [length]."""
+        return self.domain - float(self.normal.contact_radius)
 
     @cached_property
     def largest_growth(self) -> float:
-        """Growth of the contact up to which this method resolves it [b_0]."""
+        """Growth of the contact up to which this method resolves it [length]."""
         if not self.stick_grows:
             return self.growth_to_end
         return min(self.growth_to_end, _GROWTH * self.width * (1 + self.width / self.stick) ** 2)
@@ -144,40 +143,44 @@ class InitialState:
         return annulus_maps(nodes, full_slip=self.full_slip)
 
     @cached_property
-    def parts(self) -> list[int]:
-        """Ends of two parts of a vector: wear at the inner nodes; b, c and d."""
-        inner = self.maps.squares.size - 1
-        return [inner, inner + 3]
+    def units(self) -> Array:
+        """Units of the integrator's vector, (n, 1).
+
+        It holds the wear at the inner nodes, b, c - c_0, w_c or d - d_0, and the tilt.
+        """
+        length, depth = self.length_unit, self.depth_unit
+        worn = np.full(self.maps.squares.size - 1, depth / (length or 1.0))
+        tilt = np.full(TILT_TERMS if self.stick_grows else 0, depth)
+        return np.concatenate([worn, (length, length, depth), tilt])[:, None]
 
     @property
     def vector(self) -> Array:
-        """Vector of `AnnulusState` before the first cycle."""
-        tilt = np.zeros(TILT_TERMS if self.stick_grows else 0)
-        return np.concatenate([np.zeros(self.parts[0]), (1.0, 0.0, 0.0), tilt])
+        """Vector of `AnnulusState` before the first cycle, (n,)."""
+        found = np.zeros(self.units.size)
+        found[self.maps.squares.size - 1] = 1.0
+        return found
 
-    def unworn_force(self, growth: float) -> float:
-        """Return F_N/(2 E*) of the unworn profile after a growth of the contact [b_0 D_0]."""
-        profile, normal = self.normal.profile, self.normal
-        radius = np.asarray(float(normal.contact_radius) + self.length_unit * growth)
-        force = float(profile.reduced_force(profile.coordinate_from_radius(radius)))
-        return force / (2 * self.length_unit * self.depth_unit)
+    def unworn_force(self, growth: Array) -> Array:
+        """Return F_N/(2 E*) of the unworn profile after a growth of the contact [length^2]."""
+        profile = self.normal.profile
+        radius = float(self.normal.contact_radius) + growth
+        return np.asarray(profile.reduced_force(profile.coordinate_from_radius(radius)) / 2)
 
-    def rise(self, stick_shift: float, offset: Array) -> Array:
-        """Return g_0(c + offset) - g_0(c) for c = c_0 + stick_shift [D_0], all lengths in b_0."""
-        profile, unit = self.normal.profile, self.length_unit
-        stick = float(self.tangential_contact.stick_radius) + unit * stick_shift
-        ends = stick + unit * np.stack([np.minimum(offset, 0.0), np.maximum(offset, 0.0)])
+    def rise(self, stick_shift: Array, offset: Array) -> Array:
+        """Return g_0(c + offset) - g_0(c) for c = c_0 + stick_shift [length], (m, k)."""
+        profile, stick = self.normal.profile, self.stick + stick_shift
+        ends = stick + np.stack([np.minimum(offset, 0.0), np.maximum(offset, 0.0)])
         ends = np.clip(ends, float(profile.first_radius), self.domain)
         low, high = profile.coordinate_from_radius(ends)
-        width = np.minimum(unit * np.abs(offset), high)
-        if width[-1] > equivalent_1d.NARROW * high[-1]:
+        width = np.minimum(np.abs(offset), high)
+        if (width[-1] > equivalent_1d.NARROW * high[-1]).all():
             rise = profile.depth(high) - profile.depth(low)
         else:
             # A difference has rounding errors above the tolerance of the integration.
             rise = equivalent_1d.depth_step(profile, high, width, low)
-        return np.asarray(np.sign(offset) * rise / self.depth_unit)
+        return np.asarray(np.sign(offset) * rise)
 
     def slope(self, x: Array) -> Array:
-        """Return g_0'(x) [D_0/b_0], x in b_0, with a bound at a jump of f'."""
-        slope = self.normal.profile.dg(np.minimum(x * self.length_unit, self.domain))
-        return np.minimum(slope * (self.length_unit / self.depth_unit), _STEEPEST)
+        """Return g_0'(x) [1], with a bound at a jump of f'."""
+        steepest = _STEEPEST * self.depth_unit / self.length_unit
+        return np.minimum(self.normal.profile.dg(np.minimum(x, self.domain)), steepest)

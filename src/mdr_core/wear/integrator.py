@@ -1,10 +1,9 @@
 """Implicit integration of the worn annulus over the cycles, with steps as long as wear allows."""
 
 import warnings
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable
 from math import inf, isfinite
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -14,6 +13,7 @@ from mdr_core.typing import Array
 from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.rates import jacobian, rates
+from mdr_core.wear.worn_surface import WornSurface
 
 # Absolute tolerance, as a part of `rtol` times the wear by the first cycles. A larger one leaves
 # errors of the pressure above that at which wear counts as ended.
@@ -34,25 +34,21 @@ _MAX_CALLS: Final = 10_000
 _LOOSEST: Final = 0.2
 
 
-def integrate(
-    initial: InitialState, cycles: Array, rtol: float
-) -> tuple[tuple[AnnulusState, ...], float]:
-    """Return the states of the annulus at ascending numbers of cycles, and when wear stopped.
+def integrate(initial: InitialState, cycles: Array, rtol: float) -> WornSurface:
+    """Return the worn contact at ascending numbers of cycles, and when wear stopped.
 
-    There are no states without slip, and the number of cycles after which nothing wears is infinite
-    if it is not reached. The pressure in the annulus decays within some units of scaled cycles.
-    Once it is below `rtol` everywhere, the state stays as it is. Source: notes, §11.
+    That is infinite if it is not reached. The pressure in the annulus decays within some units of
+    scaled cycles. Once it is below `rtol` everywhere, the state stays as it is. Source: notes, §11.
 
     Raises InputError if the contact reaches the end of the profile, or full slip begins or ends,
     and AccuracyError if the integrator fails or takes too many steps, or the contact grows too far.
     """
-    if not initial.slips:
-        return (), inf
+    start, no_trail = initial.vector, np.empty((2, 0, cycles.size))
+    if not initial.slips or not cycles[-1]:
+        states = np.repeat(start[:, None], cycles.size, axis=1)
+        return WornSurface(initial, states, no_trail, cycles=cycles)
     rtol = min(rtol, _LOOSEST / initial.maps.squares.size**2)
     unit, scaled = initial.cycle_unit, cycles / initial.cycle_unit
-    start, last = initial.vector, float(scaled[-1])
-    if last == 0:
-        return (AnnulusState.of(initial, start),) * cycles.size, inf
     if initial.growth_to_end <= 0:
         # An event is a change of sign, which comes too late here.
         _require_all_cycles(initial, cycles, 0.0, inf)
@@ -66,14 +62,14 @@ def integrate(
         nonlocal calls
         calls += 1
         if calls > _MAX_CALLS:
-            raise _unresolved(AnnulusState.of(initial, vector), time, "a looser")
+            raise _unresolved(AnnulusState(initial, vector[:, None]), time, "a looser")
         return rates(initial, vector)
 
     # An error below reports a failure of LSODA: its warning would repeat it.
     with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
         run = solve_ivp(
             counted,
-            (0.0, last),
+            (0.0, float(scaled[-1])),
             start,
             method="LSODA",
             dense_output=True,
@@ -83,22 +79,22 @@ def integrate(
             events=_events(initial, rtol),
         )
     if run.status < 0 or not np.isfinite(run.y).all():
-        resolved = np.isfinite(run.y).all(axis=0)
-        state = AnnulusState.of(initial, run.y[:, resolved][:, -1])
-        raise _unresolved(state, run.t[resolved][-1], "a tighter")
+        resolved = np.flatnonzero(np.isfinite(run.y).all(axis=0))[-1:]
+        state = AnnulusState(initial, run.y[:, resolved])
+        raise _unresolved(state, run.t[resolved].item(), "a tighter")
     ends = (float(times[0]) * unit if times.size else inf for times in run.t_events or ())
     profile_end_at, settled_at, changed_at = ends
     _require_all_cycles(initial, cycles, profile_end_at, changed_at)
-    between: Any = run.sol
-    numbers = np.minimum(scaled, run.t[-1])
-    states = [AnnulusState.of(initial, between(n) if n > 0 else start) for n in numbers]
+    numbers, between = np.minimum(scaled, run.t[-1]), cast("Any", run.sol)
+    states, trail = np.where(numbers > 0, between(numbers), start[:, None]), no_trail
     if initial.stick_grows:
-        passed = _trail([AnnulusState.of(initial, vector) for vector in run.y.T])
-        states = [
-            replace(state, trail=np.append(passed[:, run.t < n], _trail([state]), axis=1))
-            for state, n in zip(states, numbers, strict=True)
-        ]
-    return tuple(states), settled_at
+        known, last = AnnulusState(initial, run.y), AnnulusState(initial, states)
+        trail = np.where(
+            (run.t < numbers[:, None]).T,
+            np.stack([known.stick_radius, known.retained_wear])[:, :, None],
+            np.stack([last.stick_radius, last.retained_wear])[:, None],
+        )
+    return WornSurface(initial, states, trail, settled_at=settled_at, cycles=cycles)
 
 
 def _unresolved(state: AnnulusState, scaled: float, other: str) -> AccuracyError:
@@ -107,7 +103,7 @@ def _unresolved(state: AnnulusState, scaled: float, other: str) -> AccuracyError
     `other` is the kind of tolerance that may help.
     """
     initial = state.initial
-    stick, edge = initial.length_unit * state.stick, initial.length_unit * float(state.x[-1])
+    stick, edge = state.stick_radius.item(), state.x[-1].item()
     jumps = np.array(initial.normal.profile.infinite_pressure_radii)
     room = _REACHED * edge
     inside = jumps[(jumps > max(stick - room, 0.0)) & (jumps < edge + room)]
@@ -122,11 +118,6 @@ def _unresolved(state: AnnulusState, scaled: float, other: str) -> AccuracyError
         "round the profile there"
     )
     return AccuracyError(detail, ("cycles",))
-
-
-def _trail(states: Sequence[AnnulusState]) -> Array:
-    """Return stick radii and the wear that the springs keep there, shape (2, k)."""
-    return np.array([(state.stick, state.retained_wear) for state in states]).T
 
 
 def _require_all_cycles(
@@ -155,12 +146,15 @@ def _require_all_cycles(
 
 def _scale(initial: InitialState) -> Array:
     """Return the sizes of the changes of the vector by wear."""
-    start = AnnulusState.of(initial, initial.vector)
+    inner = initial.maps.squares.size - 1
+    slip = AnnulusState(initial, initial.vector[:, None]).slip[:-1] / initial.units[:inner]
+    found = np.full(initial.units.size, initial.length_unit / float(initial.normal.contact_radius))
+    found[:inner] = np.maximum(slip[:, 0], _LEAST_SLIP)
     # In full slip the depth that can wear off is a part of the slip.
-    slip = initial.step * np.maximum(start.slip[:-1], _LEAST_SLIP)
+    found *= initial.step / initial.depth_unit
     # In a narrow annulus all but b change by a part b_0/a_0 only.
-    part = initial.step / (initial.stick + initial.width)
-    return np.concatenate([slip, (1.0, part, part), np.full(start.tilt_terms.shape, part)])
+    found[inner] = 1.0
+    return found
 
 
 def _events(initial: InitialState, rtol: float) -> list[Any]:
@@ -168,23 +162,23 @@ def _events(initial: InitialState, rtol: float) -> list[Any]:
 
     They are the profile's end, no more wear, and the beginning or the end of full slip.
     """
-    flat = float(initial.normal.profile.first_radius) / initial.length_unit
+    flat = float(initial.normal.profile.first_radius)
     vanished = flat + _REACHED * (initial.stick - flat)
 
-    def settling(state: AnnulusState) -> float:
+    def settling(state: AnnulusState) -> Array:
         if initial.full_slip and initial.constant_force:
-            return 1.0
+            return np.ones(1)
         # The work of a cycle is of the order of the square of the pressure.
-        return state.end * state.pressure.max() - rtol * state.reduced_amplitude
+        return state.end * state.stress.max() - rtol * state.reduced_amplitude
 
-    def changing(state: AnnulusState) -> float:
+    def changing(state: AnnulusState) -> Array:
         if initial.full_slip:
-            return float(state.slip.min())
-        return state.stick - vanished if initial.stick_shrinks else 1.0
+            return state.slip.min(axis=0)
+        return state.stick_radius - vanished if initial.stick_shrinks else np.ones(1)
 
-    def event(function: Callable[[AnnulusState], float]) -> Any:
+    def event(function: Callable[[AnnulusState], Array]) -> Any:
         def value(_time: float, vector: Array) -> float:
-            return function(AnnulusState.of(initial, vector))
+            return float(function(AnnulusState(initial, vector[:, None])).item())
 
         value.terminal = True  # type: ignore[attr-defined]  # read by `solve_ivp`
         return value

@@ -80,10 +80,6 @@ class LimitingWear(validity.ContactResults):
         return self.tangential_contact.normal
 
     @property
-    def _holds_depth(self) -> bool:
-        return self.normal.control == "indentation_depth"
-
-    @property
     def stick_radius(self) -> Array:
         """Stick radius c [length]: inside it nothing wears. Source: mdr-5, Eq. (5.80)."""
         return self.stick_zone.radius
@@ -113,7 +109,7 @@ class LimitingWear(validity.ContactResults):
     def indentation_depth(self) -> Array:
         """Depth d [length]: constant, or g(c) and the step at the stick edge."""
         zone = self.stick_zone
-        if self._holds_depth:
+        if self.normal.control == "indentation_depth":
             return broadcast(self.normal.indentation_depth, zone.step.shape)
         return self.normal.profile.depth(zone.coordinate) + zone.step
 
@@ -124,7 +120,7 @@ class LimitingWear(validity.ContactResults):
         Source: mdr-5, Eq. (5.90), for any profile.
         """
         contact, zone = self.normal, self.stick_zone
-        if not self._holds_depth:
+        if contact.control == "normal_force":
             return broadcast(contact.normal_force, zone.step.shape)
         inside = contact.profile.reduced_force(zone.coordinate)
         return contact.e_star * (inside + 2 * zone.radius * zone.step)
@@ -313,9 +309,8 @@ class LimitingWear(validity.ContactResults):
         Of the limit: `path_dependent`, `singular`, `no_wear`, `contact_lost`, `endless_wear`.
         """
         wears = self.stick_zone.step > 0
-        path_dependent = (
-            not self._holds_depth and self.tangential_contact.control == "tangential_displacement"
-        )
+        controls = self.normal.control, self.tangential_contact.control
+        path_dependent = controls == ("normal_force", "tangential_displacement")
         raised = {
             "path_dependent": path_dependent & wears & ~self.stick_zone.unbounded,
             "singular": wears & (self.stick_radius > 0),

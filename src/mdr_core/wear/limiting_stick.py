@@ -15,7 +15,6 @@ from mdr_core import equivalent_1d
 from mdr_core.doubles import ROUNDING
 from mdr_core.elementwise import broadcast, full, where
 from mdr_core.inversion import invert
-from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array, Flags
 
@@ -31,7 +30,6 @@ class LimitingStick:
     In full slip c is zero, and the step is the depth, which is infinite under a constant force.
     """
 
-    profile: Profile
     coordinate: Array
     """c in the profile's contact coordinate."""
     radius: Array
@@ -92,8 +90,8 @@ def by_force_and_displacement(contact: TangentialContact, amplitude: Array) -> L
     # The stick edge before wear lies further in: there the annulus outside carries load as well.
     widest = where(target > 0, contact.width, 1.0)
     width = invert(step_by_force, target, widest / 2, full(0.0, target), widest)
-    found, error = _beneath(profile, top, width), full(ROUNDING, width)
-    return _from(contact, step, unbounded=unbounded, moved=found, width_error=error)
+    moved = width, full(ROUNDING, width)
+    return _from(contact, step, unbounded=unbounded, moved=moved)
 
 
 def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> LimitingStick:
@@ -130,12 +128,11 @@ def by_depth_and_force(contact: TangentialContact, amplitude: Array) -> Limiting
         low,
         where(target > 0, high, 2.0),
     )
-    found = _beneath(profile, top, width)
-    step = _step_of_force(contact, amplitude, found[1])
+    step = _step_of_force(contact, amplitude, profile.contact_radius(top - width))
     slope = np.abs(carried(width)[1])
     # Next to the largest force the error is of second order.
     error = ROUNDING / (where(slope > 0, slope, 0.0) + np.sqrt(ROUNDING))
-    return _from(contact, step, separated=separated, moved=found, width_error=error)
+    return _from(contact, step, separated=separated, moved=(width, error))
 
 
 def _first_crossing(
@@ -157,12 +154,6 @@ def _first_crossing(
         beyond = np.where(reached.any(axis=0), first, np.minimum(first + 1, _POINTS - 1))
         high = np.take_along_axis(places, beyond, axis=0)[0]
     return low, high
-
-
-def _beneath(profile: Profile, top: Array, width: Array) -> tuple[Array, Array, Array]:
-    """Return the coordinate, radius and slip width at a width beneath the contact's edge."""
-    edge = top - width
-    return edge, profile.contact_radius(edge), width
 
 
 # By the constant load and the amplitude.
@@ -191,21 +182,24 @@ def _from(
     *,
     separated: Flags | bool = False,
     unbounded: Flags | bool = False,
-    moved: tuple[Array, Array, Array] | None = None,
-    width_error: Array | None = None,
+    moved: tuple[Array, Array] | None = None,
 ) -> LimitingStick:
-    """Return the stick zone with the coordinate, radius and slip width before wear, or `moved`.
+    """Return the stick zone before wear.
 
-    With a `width_error` the stick radius has moved, else it is that before wear.
+    Or, if it has moved, the one at a slip width in the contact coordinate, with the relative error
+    of that.
     """
     normal, slides = contact.normal, separated | unbounded
-    unworn = contact.stick_coordinate, contact.stick_radius, contact.slip_width
-    coordinate, radius, slip_width = moved or unworn
-    if width_error is None:
+    if moved is None:
+        coordinate, radius = contact.stick_coordinate, contact.stick_radius
+        slip_width = contact.slip_width
         # The coordinate resolves the distance from a flat.
         flat = where(contact.full_slip, 0.0, normal.profile.first_radius)
         width_error, error = full(0.0, slip_width), contact.stick_error - ROUNDING * flat
     else:
+        slip_width, width_error = moved
+        coordinate = normal.coordinate - slip_width
+        radius = normal.profile.contact_radius(coordinate)
         beyond = normal.contact_radius - normal.profile.first_radius
         width = where(slides, normal.contact_radius, slip_width)
         error = normal.edge_errors * beyond + width_error * width
@@ -221,4 +215,4 @@ def _from(
     )
     parts = [where(rests, still, where(slides, lost, found)) for still, lost, found in cases]
     parts += [separated & loaded, unbounded & loaded, width_error, error]
-    return LimitingStick(normal.profile, *(broadcast(part, contact.width.shape) for part in parts))
+    return LimitingStick(*(broadcast(part, contact.width.shape) for part in parts))

@@ -21,12 +21,6 @@ from mdr_core.typing import Array
 ALMOST: Final = 1 - 1e-9
 
 
-def largest_width(profile: Profile, stick: Array) -> Array:
-    """Return the width at which the annulus reaches the end of the profile [length], > 0."""
-    room = ALMOST * float(profile.domain) - stick
-    return np.asarray(np.maximum(room, TINY))
-
-
 def angle(stick: Array, width: Array) -> Array:
     """Return arccos(c/r), r = c + w [1]."""
     return np.asarray(np.arctan2(_root(stick, width), stick))
@@ -69,7 +63,7 @@ def width_where_worn(profile: Profile, stick: Array, step: Array, start: Array) 
         theta, edge = angle(stick, width), (stick + width) * _root(stick, width)
         return total / theta, width * (growth / total - stick / edge / theta)
 
-    room = largest_width(profile, stick)
+    room = np.maximum(ALMOST * float(profile.domain) - stick, TINY)
     start = np.minimum(start, room / 2)
     found = invert(mean_rise, step, start, np.zeros_like(step), room)
     if np.all(found < room / 2):
