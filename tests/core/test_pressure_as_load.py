@@ -59,6 +59,21 @@ def test_hertz() -> None:
     assert contact.normal_force == pytest.approx(np.pi**3 * 4 * p**3 / 54, rel=1e-13, abs=0)
 
 
+def test_pressure_of_a_blunt_cone_grows_with_the_logarithm_of_the_radius() -> None:
+    """p = (E*/pi) int_0^a dg/x, by the antiderivative of the cone beyond its tip."""
+    slope, tip, a = 0.1, 1.0, 1.3131993827466e7
+    b = slope * tip
+    # g' = slope arccos(b/x) + (2/R)(x - sqrt(x^2 - b^2)), and the integral of g'/x is elementary.
+    u = np.linspace(0.0, 1.0, 200_001)[1:] * np.log(a / b)
+    x = b * np.exp(u)
+    inner = 2 * b / tip
+    beyond = slope * np.arccos(b / x) + 2 * (x - np.sqrt((x - b) * (x + b))) / tip
+    start = 2 * b / tip
+    outer = (beyond.sum() - beyond[-1] / 2 + start / 2) * (u[1] - u[0])
+    found = normal.solve(RoundedCone(slope, tip), 1.0, maximum_pressure=(inner + outer) / np.pi)
+    assert found.contact_radius == pytest.approx(a, rel=1e-3, abs=0)
+
+
 @pytest.mark.parametrize(
     ("profile", "pressure", "reason"),
     [
@@ -70,6 +85,8 @@ def test_hertz() -> None:
         (CappedParaboloid(0.5, 3.0, 1.1), [0.01, 0.2], "at radius 0.5 it is infinite"),
         (TwoSpheres((1.0, -1.01)), 1.0, "60 degrees of the ball"),
         (Sphere(1.0), 1e9, "beyond radius"),
+        (RoundedCone(0.1, 1.0), 1e3, "leaves the range of double precision"),
+        (Hyperboloid(0.1, 1.0), 1e3, "leaves the range of double precision"),
         (Paraboloid(1.0), -1.0, "must not be negative"),
         (Paraboloid(1.0), np.inf, "must be finite"),
     ],
