@@ -67,6 +67,7 @@ def test_no_wear_without_slip(profile: Profile, load: dict[str, Any], name: str)
     for edge in ("stick_radius", "wear_radius"):
         assert list(result[edge]) == [float(first.contact_radius)] * 2
     assert list(result["worn_volume"]) == [0.0, 0.0]
+    assert wear.error_estimate < 1e-11
     assert list(result["normal_force"]) == pytest.approx(
         [float(first.normal_force)] * 2, rel=1e-14, abs=0
     )
