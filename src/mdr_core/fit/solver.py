@@ -161,7 +161,7 @@ def _on_layer(
 
 
 def _of_sample(found: Fit, ratio: float, indenter: Body | Literal["rigid"]) -> Fit:
-    """Return the fit with Young's modulus of the sample, or an InputError."""
+    """Return the fit with Young's modulus of the sample and the two bodies, or an InputError."""
     require_poissons_ratio(("poissons_ratio",), ratio)
     other = 0.0 if indenter == RIGID else found.e_star / from_bodies([indenter, RIGID]).e_star
     if other >= 1:
@@ -172,8 +172,14 @@ def _of_sample(found: Fit, ratio: float, indenter: Body | Literal["rigid"]) -> F
     error = 0.0
     if "e_star" in found.fit:
         error = float(found.standard_errors[found.fit.index("e_star")]) / found.e_star
+    # The warnings and the error of the model are those of these bodies.
+    assumed = found.normal.material
+    bodies = from_bodies([indenter, Body(modulus, ratio)], body_thickness=assumed.body_thickness)
     return replace(
-        found, youngs_modulus=modulus, youngs_modulus_error=modulus * error / (1 - other)
+        found,
+        normal=replace(found.normal, material=replace(bodies, layer=assumed.layer)),
+        youngs_modulus=modulus,
+        youngs_modulus_error=modulus * error / (1 - other),
     )
 
 
