@@ -28,6 +28,9 @@ _SAMPLES: Final = 64
 _LEAST_STEP: Final = 1e-13
 # Relative step of the derivative of a searched maximum, whose own error is about 1e-13.
 _DIFFERENCE: Final = 1e-5
+# Coordinate whose energy overflows on every profile without an end. The pressure under a blunt cone
+# grows with the logarithm of the radius, so that a search beyond it would find no end.
+_FARTHEST: Final = 1e150
 LEAST_GAP: Final = 1e-13
 """1 - (r/a)^2 below which the infinite tension of adhesion is taken to be constant."""
 # Points across the bracket of a peak, in parts of it. Each interval of a table, whose interpolation
@@ -130,7 +133,8 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
     if some(beyond):
         detail = f"no contact has it: at radius {extremes(infinite)[0]:.12g} it is infinite"
         raise InputError((*path, *first_index(beyond)), detail, beyond)
-    start, low, high = (full(each, target) for each in (last / 2, 0.0, where(end < inf, last, inf)))
+    largest = where(end < inf, last, _FARTHEST)
+    start, low, high = (full(each, target) for each in (last / 2, 0.0, largest))
     sloped = partial(pressure_and_slope, profile)
     return invert(sloped, target, start, low, high)
 

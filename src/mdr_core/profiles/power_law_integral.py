@@ -17,8 +17,7 @@ def power_law_integral(density: Callable[[Array], Array], upper: Array, scale: P
     The substitution s = scale sinh(w) resolves s far above the scale as well; the integrand grows
     at most like exp(5 w).
     """
-    # A search for a load that no representable contact has goes on to infinite coordinates.
-    top = np.arcsinh(np.minimum(upper / scale, np.finfo(float).max))
+    top = np.arcsinh(upper / scale)
     if not some(top):
         return top
     # On the axis a density may be 0/0.
