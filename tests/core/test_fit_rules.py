@@ -220,6 +220,20 @@ def test_misfit_names_parameters_that_can_be_fitted(shape: mdr.Profile, layer: A
     assert "work_of_adhesion" not in found.message
 
 
+@pytest.mark.parametrize("exponent", [2.0, 100.0])
+def test_fit_warns_of_its_own_error(exponent: float) -> None:
+    # The force on a layer is interpolated over the depth, least well under the bluntest powers.
+    depth, layer = np.linspace(0.0, 0.01, 60), mdr.Layer(1.0, "frictionless")
+    probe = mdr.Power(1.0, exponent)
+    material = mdr.from_bodies(["rigid", mdr.Body(1.0, 0.4)], layer=layer)
+    force = mdr.layer.solve(probe, material, indentation_depth=depth).normal_force
+    given = {"indentation_depth": depth, "normal_force": force, "layer": layer}
+    found = fit.solve(probe, fit=["e_star"], **given)
+    assert abs(found.e_star / material.e_star - 1) <= found.error_estimate
+    is_warned = "accuracy" in {each.code for each in found.warnings}
+    assert is_warned == (found.error_estimate > 1e-9) == (exponent > 2)
+
+
 def test_curve_before_contact_with_a_layer_is_refused() -> None:
     layer = mdr.Layer(thickness=1.0, base="frictionless")
     depth = np.linspace(-2, -1, 20)

@@ -77,7 +77,10 @@ class Fit(LeastSquaresFit):
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        return *self.normal.warnings_without_bodies, *self.notices
+        found = [each for each in self.normal.warnings_without_bodies if each.code != "accuracy"]
+        if self.error_estimate > normal.ACCURACY:
+            found.append(normal.inaccurate(self.error_estimate))
+        return *found, *self.notices
 
 
 def result(model: Model, found: Parameters) -> Fit:
