@@ -14,6 +14,7 @@ from mdr_core.elementwise import every, full, in_blocks, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.inversion import MAX_STEPS, invert
 from mdr_core.profiles import Paraboloid, Power, Profile, RoundedPunch, Tabulated
+from mdr_core.profiles.powers import PowerLaw
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.validation import extremes, first_index, require_inside, require_not_negative
 
@@ -127,14 +128,19 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
         reason = "infinite under any load, or not determined by the points of a table"
         raise InputError(path, f"is {reason}: give another load, or a profile that is smooth")
     end = np.minimum(infinite, profile.domain)
-    last = profile.coordinate_from_radius(where(end < inf, end * (1 - ADJACENT), 1.0))
+    # A profile without an end is searched from its own scale; any contact stands for its last one.
+    anywhere = 2 * profile.first_radius + 1.0
+    last = profile.coordinate_from_radius(where(end < inf, end * (1 - ADJACENT), anywhere))
+    middle = last / 2
+    if not some(end < inf):
+        middle = number(1.0) * (1.0 if isinstance(profile, PowerLaw) else profile.scale)
     beyond = (end < inf) & (target > largest_stress(profile, last, last > 0))
     require_inside(path, beyond & (end == profile.domain), profile)
     if some(beyond):
         detail = f"no contact has it: at radius {extremes(infinite)[0]:.12g} it is infinite"
         raise InputError((*path, *first_index(beyond)), detail, beyond)
     largest = where(end < inf, last, _FARTHEST)
-    start, low, high = (full(each, target) for each in (last / 2, 0.0, largest))
+    start, low, high = (full(each, target) for each in (middle, 0.0, largest))
     sloped = partial(pressure_and_slope, profile)
     return invert(sloped, target, start, low, high)
 

@@ -16,10 +16,13 @@ from mdr_core.profiles import (
     Hyperboloid,
     Paraboloid,
     Power,
+    PowerTerm,
     Profile,
     RoundedCone,
     RoundedPunch,
+    Series,
     Sphere,
+    SphericalTipCone,
     Tabulated,
     TruncatedCone,
     TwoSpheres,
@@ -49,6 +52,27 @@ def test_pressure_of_a_contact_leads_back_to_it(
     for name in ("contact_radius", "indentation_depth", "normal_force"):
         error = np.abs(getattr(found, name) / getattr(known, name) - 1).max()
         assert error <= found.error_estimate < 1e-10, name
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        lambda size: RoundedPunch(size, 2 * size),
+        lambda size: RoundedCone(0.3, size),
+        lambda size: SphericalTipCone(1.0, size),
+        lambda size: Hyperboloid(0.4, size),
+        lambda size: Series((PowerTerm(1 / size, 2.0), PowerTerm(1 / size**3, 4.0))),
+        Paraboloid,
+        lambda size: CappedParaboloid(size, 3 * size, 2 * size),
+    ],
+)
+@pytest.mark.parametrize("size", [1e-9, 5e-8, 1.0, 5e4])
+def test_unit_of_length_does_not_matter(kind: Any, size: float) -> None:
+    p = np.array([0.0, 1e-16, 1e-6, 0.05, 0.1])
+    expected = normal.solve(kind(1.0), 1.0, maximum_pressure=p).contact_radius
+    found = normal.solve(kind(size), 1.0, maximum_pressure=p).contact_radius
+    assert found == pytest.approx(size * expected, rel=1e-11, abs=0)
+    assert normal.solve(kind(size), 1.0, maximum_pressure=1e-16).contact_radius == found[1]
 
 
 def test_hertz() -> None:
