@@ -18,7 +18,7 @@ from mdr_core.fit import adhesive
 from mdr_core.fit.model import PARAMETERS, Model
 from mdr_core.fit.result import Fit, result
 from mdr_core.layer import DepthCurve
-from mdr_core.layer.equation import LARGEST
+from mdr_core.layer.equation import require_flat_within
 from mdr_core.materials import RIGID, Body, Layer, from_bodies
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags
@@ -154,9 +154,7 @@ def _on_layer(
         raise InputError(("layer",), "cannot be combined with a fitted work_of_adhesion")
     if body_thickness is not None:
         raise InputError(("layer",), "and body_thickness exclude each other: give one of them")
-    if profile.first_radius > LARGEST * layer.thickness:
-        detail = f"must be at least 1/{LARGEST:g} of the radius of the flat face"
-        raise InputError(("layer", "thickness"), detail)
+    require_flat_within(profile, layer, ("layer",))
     return DepthCurve.up_to(profile, layer, max(float(depth.max()), 2 * float(np.ptp(depth))))
 
 
