@@ -14,6 +14,7 @@ from mdr_core.elementwise import every, full, in_blocks, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.inversion import MAX_STEPS, invert
 from mdr_core.profiles import Paraboloid, Power, Profile, RoundedPunch, Tabulated
+from mdr_core.profiles.powers import PowerLaw
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.validation import extremes, first_index, require_inside, require_not_negative
 
@@ -27,6 +28,9 @@ _INTERVALS: Final = 8
 _LEAST_STEP: Final = 1e-13
 # Relative step of the derivative of a searched maximum, whose own error is about 1e-13.
 _DIFFERENCE: Final = 1e-5
+# Coordinate whose energy overflows on every profile without an end. The pressure under a blunt cone
+# grows with the logarithm of the radius, so that a search beyond it would find no end.
+_FARTHEST: Final = 1e150
 LEAST_GAP: Final = 1e-13
 """1 - (r/a)^2 below which the infinite tension of adhesion is taken to be constant."""
 # Points across the bracket of a peak, in parts of it. Each interval of a table, whose interpolation
@@ -118,13 +122,19 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
         reason = "infinite under any load, or not determined by the points of a table"
         raise InputError(path, f"is {reason}: give another load, or a profile that is smooth")
     end = np.minimum(infinite, profile.domain)
-    last = profile.coordinate_from_radius(where(end < inf, end * (1 - ADJACENT), 1.0))
+    # A profile without an end is searched from its own scale; any contact stands for its last one.
+    anywhere = 2 * profile.first_radius + 1.0
+    last = profile.coordinate_from_radius(where(end < inf, end * (1 - ADJACENT), anywhere))
+    middle = last / 2
+    if not some(end < inf):
+        middle = number(1.0) * (1.0 if isinstance(profile, PowerLaw) else profile.scale)
     beyond = (end < inf) & (target > largest_stress(profile, last, last > 0))
     require_inside(path, beyond & (end == profile.domain), profile)
     if some(beyond):
         detail = f"no contact has it: at radius {extremes(infinite)[0]:.12g} it is infinite"
         raise InputError((*path, *first_index(beyond)), detail, beyond)
-    start, low, high = (full(each, target) for each in (last / 2, 0.0, where(end < inf, last, inf)))
+    largest = where(end < inf, last, _FARTHEST)
+    start, low, high = (full(each, target) for each in (middle, 0.0, largest))
     sloped = partial(pressure_and_slope, profile)
     return invert(sloped, target, start, low, high)
 

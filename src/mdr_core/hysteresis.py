@@ -54,7 +54,8 @@ _HALF, _WIDEST = 1.96, 0.5
 _NO_WORSE: Final = 0.1**0.5
 # Cause of residuals that are not noise.
 _CAUSES: Final = {
-    "misfit": "the shape, the rig, the normal load or the model is wrong, or the force lags behind",
+    "misfit": "the shape, the rig, the normal load or the model is wrong, the points hold the "
+    "first loading, or the force lags behind",
     "correlated_noise": "the forces drift, or neighbouring errors are alike",
 }
 _CODES: Final = {"two_branches": "misfit", "drift": "correlated_noise"}

@@ -83,6 +83,9 @@ def invert(function: Sloped, target: Array, start: Array, low: Array, high: Arra
             ) | last
             moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))
             moved = where(moved < LARGEST, where(moved > 1 / LARGEST, moved, 0.0), inf)
+            # Without a value neither bound moves, nor does the middle between them.
+            if count >= _ALONE and every(done | (np.isnan(residual) & (moved == s))):
+                break
             # A converged root does not change any more, so that it does not depend on the other
             # roots.
             s = where(done, s, moved)

@@ -34,6 +34,8 @@ _MULTIPLIER: Final = (
 _LABEL: Final = r"(?i)^(fancyNames|columns|headings?|units?)\s*[:=]\s*"
 # Characters of the longest heading: tables of instruments have some hundred.
 _LONGEST: Final = 4_000
+# Argument of a function behind its name: A(h), A(hc), f(r).
+_ARGUMENT: Final = r"(?<=\w) ?\((h|h_?c|r)\)"
 _SQUARE: Final = r"(²|\^2|\*\*2|2)$"
 # A number before a unit, such as 10^-6, 1e-6 or x10-6.
 _FACTOR: Final = (
@@ -124,7 +126,8 @@ def titles_of(
 
 
 def _title(cell: str, line: int) -> Title:
-    """Return a title: `r [mm]`, `r (10^-6 m)`, `r/mm`, `r, mm`, `load_micro_N` or `A [mm²]`."""
+    """Return a title: `r [mm]`, `r (10^-6 m)`, `r/mm`, `r, mm`, `load_micro_N` or `A(h) [mm²]`."""
+    cell = re.sub(_ARGUMENT, "", cell)
     name, bracket, inside = re.match(r"([^\[({]*)([\[({]?)([^\])}]*)", cell).groups()  # type: ignore[union-attr]
     parts = re.split(r"(?<=[^\W\d])[ _]|[/,]", name)
     # The unit is what follows the name, or a word within it: Defl_nN_Ex.
@@ -149,7 +152,8 @@ def _rank(title: Title, quantity: str) -> int | None:
     for name in ("".join(re.split(r"[\W\d_]+", title.name.lower())), *words[: len(words) == 1]):
         if name in order:
             return order.index(name)
-    return len(order) if measure and quantity not in PROFILE else None
+    # A length may be a radius or a height; an area is that of a tip.
+    return len(order) if measure and (quantity not in PROFILE or measure == "area") else None
 
 
 def places_of(

@@ -28,7 +28,7 @@ from mdr_core.table_headings import (
 from mdr_core.typing import Array
 from mdr_core.validation import require_type
 
-_AREAS: Final = {"area", "a", "section", "areas"}
+_AREAS: Final = {"area", "a", "section", "areas", "fläche", "kontaktfläche", "aire"}
 _POINT: Final = re.compile(r"(?ai)[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?")
 _COMMA: Final = re.compile(r"(?ai)[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?")
 # Separator of columns, and the form of a number. Blanks, or a comma and a blank, separate numbers
@@ -308,10 +308,11 @@ def _table(
     taken, values = {}, []
     for i, wanted in zip(places, kind, strict=True):
         title = titles[i]
-        is_area = wanted == "radius" and _AREAS & set(re.split(r"[\W\d_]+", title.name.lower()))
+        is_area = wanted == "radius" and _is_area(title)
         taken[i] = quantity = "area" if is_area else wanted
         if title.unknown or (title.unit and title.unit[0] != MEASURES[quantity]):
-            unknown = title.unknown or f"the unit {(title.unit or kind)[1]}"
+            measure, unit, _ = title.unit or ("", "", 0.0)
+            unknown = title.unknown or f"the unit {unit}{'²' * (measure == 'area')}"
             raise refuse(title.line, f"{unknown} is none of {known_units(quantity)}")
         numbers = _column(rows, i)
         for bad, detail in (
@@ -335,6 +336,13 @@ def _table(
     others = [i for i in numeric if i not in taken]
     segments = segments_of([cells for _, cells in rows], numeric)
     return table._replace(time=_time(rows, titles, others), segments=segments)
+
+
+def _is_area(title: Title) -> bool:
+    """Return whether a column is an area, by its name or its unit; r² in mm² is none."""
+    words = re.split(r"[\W\d_]+", title.name.lower())
+    measured = title.unit is not None and title.unit[0] == "area"
+    return bool(_AREAS & set(words)) or (measured and not re.match("[rx]", words[0]))
 
 
 def _column(rows: Sequence[_Row], i: int) -> Array:

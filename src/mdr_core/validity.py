@@ -302,7 +302,7 @@ def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Fin
         second = " of the first body; the second counts as flat" if flat else ""
         causes = (
             (f"the finite size of the bodies, a/R = {steepest:.2g}{second}", "reduce the load"),
-            ("the neglected radial displacement", "reduce the slope there"),
+            ("the neglected radial displacement", "reduce the slope at the contact edge"),
             (f"the slope {steepest:.2g} at the contact edge", "reduce the slope there"),
             ("the side wall of the elastic punch", "take a far stiffer punch as rigid"),
         )

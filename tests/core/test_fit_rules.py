@@ -179,6 +179,61 @@ def test_curve_that_is_met_exactly_has_errors_of_rounding(names: tuple[str, ...]
     assert found.error_estimate < 1e-12
 
 
+@pytest.mark.parametrize("indenter", ["rigid", mdr.Body(150e9, 0.2)])
+@pytest.mark.parametrize("base", [None, "bonded"])
+def test_error_of_the_model_is_that_of_the_fitted_bodies(indenter: Any, base: Any) -> None:
+    layer = None if base is None else mdr.Layer(4e-6, base, 0.5)
+    depth, probe = np.linspace(0.0, 1e-6, 41), mdr.Paraboloid(5e-6)
+    material = mdr.from_bodies([indenter, mdr.Body(2e3, 0.5)], layer=layer)
+    solve = mdr.normal.solve if layer is None else mdr.layer.solve
+    known = solve(probe, material, indentation_depth=depth)
+    found = fit.solve(
+        probe,
+        indentation_depth=depth,
+        normal_force=known.normal_force,
+        fit=["e_star"],
+        layer=layer,
+        poissons_ratio=0.5,
+        indenter=indenter,
+    )
+    assert found.youngs_modulus == pytest.approx(2e3, rel=1e-6)
+    for name in ("model_error", "model_error_radius", "model_error_pressure"):
+        expected = getattr(known, name)[-1]
+        assert np.ravel(getattr(found, name)) == pytest.approx([expected], rel=1e-5)
+    # The curve interpolates a layer, and has no noise that would hide it.
+    codes = {each.code for each in found.warnings} - {"misfit"}
+    assert codes == {each.code for each in known.warnings}
+
+
+@pytest.mark.parametrize(
+    ("shape", "layer"),
+    [(mdr.Paraboloid(1.0), mdr.Layer(1.0, "frictionless")), (mdr.FlatPunch(1.0), None)],
+)
+def test_misfit_names_parameters_that_can_be_fitted(shape: mdr.Profile, layer: Any) -> None:
+    depth = np.linspace(0.0, 0.1, 30)
+    # Neither contact has this curve.
+    given = {"indentation_depth": depth, "normal_force": depth**3 + depth}
+    (found,) = [
+        each for each in fit.solve(shape, layer=layer, **given).warnings if each.code == "misfit"
+    ]
+    assert "force_offset" in found.message
+    assert "work_of_adhesion" not in found.message
+
+
+@pytest.mark.parametrize("exponent", [2.0, 100.0])
+def test_fit_warns_of_its_own_error(exponent: float) -> None:
+    # The force on a layer is interpolated over the depth, least well under the bluntest powers.
+    depth, layer = np.linspace(0.0, 0.01, 60), mdr.Layer(1.0, "frictionless")
+    probe = mdr.Power(1.0, exponent)
+    material = mdr.from_bodies(["rigid", mdr.Body(1.0, 0.4)], layer=layer)
+    force = mdr.layer.solve(probe, material, indentation_depth=depth).normal_force
+    given = {"indentation_depth": depth, "normal_force": force, "layer": layer}
+    found = fit.solve(probe, fit=["e_star"], **given)
+    assert abs(found.e_star / material.e_star - 1) <= found.error_estimate
+    is_warned = "accuracy" in {each.code for each in found.warnings}
+    assert is_warned == (found.error_estimate > 1e-9) == (exponent > 2)
+
+
 def test_curve_before_contact_with_a_layer_is_refused() -> None:
     layer = mdr.Layer(thickness=1.0, base="frictionless")
     depth = np.linspace(-2, -1, 20)

@@ -341,7 +341,7 @@ def test_layers_are_rejected_where_they_do_not_combine() -> None:
             ):
                 layer.solve(Cone(1.0), _material(20, BONDED, 0.3), work_of_adhesion=work, **load)
     # The flat alone is too large.
-    with pytest.raises(InputError, match="10 times the thickness"):
+    with pytest.raises(InputError, match="1/10 of the radius of the flat face"):
         layer.solve(RoundedPunch(2.0, 1.0), _material(20, BONDED, 0.3), normal_force=1.0)
     with pytest.raises(InputError, match="exclude each other"):
         Material(1.0, body_thickness=1.0, layer=Layer(1.0, "frictionless"))

@@ -16,10 +16,13 @@ from mdr_core.profiles import (
     Hyperboloid,
     Paraboloid,
     Power,
+    PowerTerm,
     Profile,
     RoundedCone,
     RoundedPunch,
+    Series,
     Sphere,
+    SphericalTipCone,
     Tabulated,
     TruncatedCone,
     TwoSpheres,
@@ -51,12 +54,48 @@ def test_pressure_of_a_contact_leads_back_to_it(
         assert error <= found.error_estimate < 1e-10, name
 
 
+@pytest.mark.parametrize(
+    "kind",
+    [
+        lambda size: RoundedPunch(size, 2 * size),
+        lambda size: RoundedCone(0.3, size),
+        lambda size: SphericalTipCone(1.0, size),
+        lambda size: Hyperboloid(0.4, size),
+        lambda size: Series((PowerTerm(1 / size, 2.0), PowerTerm(1 / size**3, 4.0))),
+        Paraboloid,
+        lambda size: CappedParaboloid(size, 3 * size, 2 * size),
+    ],
+)
+@pytest.mark.parametrize("size", [1e-9, 5e-8, 1.0, 5e4])
+def test_unit_of_length_does_not_matter(kind: Any, size: float) -> None:
+    p = np.array([0.0, 1e-16, 1e-6, 0.05, 0.1])
+    expected = normal.solve(kind(1.0), 1.0, maximum_pressure=p).contact_radius
+    found = normal.solve(kind(size), 1.0, maximum_pressure=p).contact_radius
+    assert found == pytest.approx(size * expected, rel=1e-11, abs=0)
+    assert normal.solve(kind(size), 1.0, maximum_pressure=1e-16).contact_radius == found[1]
+
+
 def test_hertz() -> None:
     """F_N = pi^3 R^2 p^3/(6 E*^2), a = pi R p/(2 E*)."""
     p = np.array([0.0, 1e-9, 0.05])
     contact = normal.solve(Paraboloid(2.0), 3.0, maximum_pressure=p)
     assert contact.contact_radius == pytest.approx(np.pi * 2 * p / 6, rel=1e-14, abs=0)
     assert contact.normal_force == pytest.approx(np.pi**3 * 4 * p**3 / 54, rel=1e-13, abs=0)
+
+
+def test_pressure_of_a_blunt_cone_grows_with_the_logarithm_of_the_radius() -> None:
+    """p = (E*/pi) int_0^a dg/x, by the antiderivative of the cone beyond its tip."""
+    slope, tip, a = 0.1, 1.0, 1.3131993827466e7
+    b = slope * tip
+    # g' = slope arccos(b/x) + (2/R)(x - sqrt(x^2 - b^2)), and the integral of g'/x is elementary.
+    u = np.linspace(0.0, 1.0, 200_001)[1:] * np.log(a / b)
+    x = b * np.exp(u)
+    inner = 2 * b / tip
+    beyond = slope * np.arccos(b / x) + 2 * (x - np.sqrt((x - b) * (x + b))) / tip
+    start = 2 * b / tip
+    outer = (beyond.sum() - beyond[-1] / 2 + start / 2) * (u[1] - u[0])
+    found = normal.solve(RoundedCone(slope, tip), 1.0, maximum_pressure=(inner + outer) / np.pi)
+    assert found.contact_radius == pytest.approx(a, rel=1e-3, abs=0)
 
 
 @pytest.mark.parametrize(
@@ -70,6 +109,8 @@ def test_hertz() -> None:
         (CappedParaboloid(0.5, 3.0, 1.1), [0.01, 0.2], "at radius 0.5 it is infinite"),
         (TwoSpheres((1.0, -1.01)), 1.0, "60 degrees of the ball"),
         (Sphere(1.0), 1e9, "beyond radius"),
+        (RoundedCone(0.1, 1.0), 1e3, "leaves the range of double precision"),
+        (Hyperboloid(0.1, 1.0), 1e3, "leaves the range of double precision"),
         (Paraboloid(1.0), -1.0, "must not be negative"),
         (Paraboloid(1.0), np.inf, "must be finite"),
     ],

@@ -1,6 +1,7 @@
 """Profiles and curves in files are read as they are meant, or refused with the line."""
 
 import json
+import math
 from pathlib import Path
 from time import process_time
 
@@ -30,6 +31,41 @@ def test_tables_that_cannot_be_read_are_refused_with_the_line(file: str) -> None
     with pytest.raises(InputError) as refused:
         read_table(TABLES / file, "m")
     assert refused.value.detail == EXPECTED["refused"][file]
+
+
+@pytest.mark.parametrize(
+    "heading",
+    [
+        "Contact depth [nm];Projected area [µm²]",
+        "Contact Depth (nm);Contact Area (um^2)",
+        "h_c [nm];A_c [µm²]",
+        "hc / nm;Ac / µm²",
+        "hc [nm];A(hc) [µm2]",
+        "Kontakttiefe [nm];Fläche [µm²]",
+        "Profondeur (nm);Aire (µm²)",
+    ],
+)
+def test_area_function_is_known_by_the_unit_or_the_name_of_the_area(heading: str) -> None:
+    area = [0.01, 0.04, 0.09]
+    rows = "".join(f"{10 * (i + 1)};{each}\n" for i, each in enumerate(area))
+    table = parse(f"{heading}\n{rows}".encode(), PROFILE)
+    assert [unit and unit[2] for _, unit, *_ in table.titles] == [1e-9, 1e-6]
+    assert table.taken == {1: "area", 0: "height"}
+    assert table.values[0] == pytest.approx([(each / math.pi) ** 0.5 for each in area], rel=1e-15)
+    assert table.values[1] == [10.0, 20.0, 30.0]
+
+
+@pytest.mark.parametrize(
+    ("heading", "unit"), [("r^2 [mm^2];f [µm]", "mm²"), ("A [nm];h [nm]", "nm")]
+)
+def test_unit_that_contradicts_the_name_is_refused(heading: str, unit: str) -> None:
+    with pytest.raises(InputError, match=f"Line 1: the unit {unit} is none of"):
+        parse(f"{heading}\n1;2\n3;4\n".encode(), PROFILE)
+
+
+def test_argument_of_a_function_is_no_unit() -> None:
+    table = parse(b"r [mm];f(r) [mm]\n0;0\n1;2\n2;8\n", PROFILE)
+    assert table.values == [[0.0, 1.0, 2.0], [0.0, 2.0, 8.0]]
 
 
 @pytest.mark.parametrize(

@@ -67,6 +67,7 @@ def test_no_wear_without_slip(profile: Profile, load: dict[str, Any], name: str)
     for edge in ("stick_radius", "wear_radius"):
         assert list(result[edge]) == [float(first.contact_radius)] * 2
     assert list(result["worn_volume"]) == [0.0, 0.0]
+    assert wear.error_estimate < 1e-11
     assert list(result["normal_force"]) == pytest.approx(
         [float(first.normal_force)] * 2, rel=1e-14, abs=0
     )
@@ -244,3 +245,10 @@ def test_loads_broadcast_with_moduli() -> None:
     both = limit.solve(square, 0.8, 0.5, tangential_force=[[0.05, 0.1]])
     assert both.wear_radius.shape == (2, 2)
     assert both.worn_depth([0.1, 0.2, 0.3]).shape == (2, 2, 3)
+
+
+@pytest.mark.parametrize("rounding", [1.0, 1e-6])
+def test_inaccurate_limit_carries_the_warning(rounding: float) -> None:
+    # The stick radius lies within the rounding error of its distance from the flat.
+    wear = worn(RoundedPunch(1.0, rounding), {"normal_force": 1e-3}, {"tangential_force": 1e-4})
+    assert ("accuracy" in codes(wear)) == (wear.error_estimate > 1e-9) == (rounding < 1e-3)

@@ -81,6 +81,11 @@ def test_stress_of_a_full_slip_balances_the_largest_torque(client: Client) -> No
             "/material/work_of_adhesion",
             "adhesion with friction",
         ),
+        (
+            {"material": {"e_star": 1e9, "shear_modulus": 1e9, "yield_strength": 1e6}},
+            "/material/yield_strength",
+            "is not checked under a twist",
+        ),
     ],
 )
 def test_what_is_not_exact_is_refused_with_the_reason(

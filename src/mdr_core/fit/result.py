@@ -77,7 +77,10 @@ class Fit(LeastSquaresFit):
     @property
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
-        return *self.normal.warnings_without_bodies, *self.notices
+        found = [each for each in self.normal.warnings_without_bodies if each.code != "accuracy"]
+        if self.error_estimate > normal.ACCURACY:
+            found.append(normal.inaccurate(self.error_estimate))
+        return *found, *self.notices
 
 
 def result(model: Model, found: Parameters) -> Fit:
@@ -158,7 +161,10 @@ def _misfit(model: Model, q: Array, residual: Array) -> tuple[str, float]:
 
 def _doubts(model: Model, code: str, misfit: float) -> tuple[Notice, ...]:
     """Return the warning about the residuals, if there is one."""
-    left = " and ".join(name for name in PARAMETERS[2:] if name not in model.fit)
+    # The work of adhesion is not fitted on a layer, nor under a flat punch.
+    is_open = model.on_layer is None and not model.profile.is_flat_punch
+    possible = PARAMETERS[2:] if is_open else PARAMETERS[2:3]
+    left = " and ".join(name for name in possible if name not in model.fit)
     remedy = f"; fit {left} too, if the curve has them" if left and code == "misfit" else ""
     return residuals.doubts(code, misfit, _REMEDIES[code], remedy)
 

@@ -18,7 +18,7 @@ from mdr_core.fit import adhesive
 from mdr_core.fit.model import PARAMETERS, Model
 from mdr_core.fit.result import Fit, result
 from mdr_core.layer import DepthCurve
-from mdr_core.layer.equation import LARGEST
+from mdr_core.layer.equation import require_flat_within
 from mdr_core.materials import RIGID, Body, Layer, from_bodies
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags
@@ -154,14 +154,12 @@ def _on_layer(
         raise InputError(("layer",), "cannot be combined with a fitted work_of_adhesion")
     if body_thickness is not None:
         raise InputError(("layer",), "and body_thickness exclude each other: give one of them")
-    if profile.first_radius > LARGEST * layer.thickness:
-        detail = f"must be at least 1/{LARGEST:g} of the radius of the flat face"
-        raise InputError(("layer", "thickness"), detail)
+    require_flat_within(profile, layer, ("layer",))
     return DepthCurve.up_to(profile, layer, max(float(depth.max()), 2 * float(np.ptp(depth))))
 
 
 def _of_sample(found: Fit, ratio: float, indenter: Body | Literal["rigid"]) -> Fit:
-    """Return the fit with Young's modulus of the sample, or an InputError."""
+    """Return the fit with Young's modulus of the sample and the two bodies, or an InputError."""
     require_poissons_ratio(("poissons_ratio",), ratio)
     other = 0.0 if indenter == RIGID else found.e_star / from_bodies([indenter, RIGID]).e_star
     if other >= 1:
@@ -172,8 +170,14 @@ def _of_sample(found: Fit, ratio: float, indenter: Body | Literal["rigid"]) -> F
     error = 0.0
     if "e_star" in found.fit:
         error = float(found.standard_errors[found.fit.index("e_star")]) / found.e_star
+    # The warnings and the error of the model are those of these bodies.
+    assumed = found.normal.material
+    bodies = from_bodies([indenter, Body(modulus, ratio)], body_thickness=assumed.body_thickness)
     return replace(
-        found, youngs_modulus=modulus, youngs_modulus_error=modulus * error / (1 - other)
+        found,
+        normal=replace(found.normal, material=replace(bodies, layer=assumed.layer)),
+        youngs_modulus=modulus,
+        youngs_modulus_error=modulus * error / (1 - other),
     )
 
 

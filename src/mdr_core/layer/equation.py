@@ -21,6 +21,7 @@ import numpy as np
 
 from mdr_core.abel.displacement import Kernel
 from mdr_core.elementwise import full, in_blocks, where
+from mdr_core.errors import InputError
 from mdr_core.layer_response import softening
 from mdr_core.materials import Layer
 from mdr_core.profiles import Profile
@@ -182,6 +183,13 @@ def allowed(profile: Profile, layer: Layer) -> Range:
         return Range(float(profile.domain), profile.end)
     reason = f"where it exceeds {LARGEST:g} times the thickness of the layer"
     return Range(reach, (reason, "use finite elements"))
+
+
+def require_flat_within(profile: Profile, layer: Layer, path: tuple[str, ...]) -> None:
+    """Raise InputError at the layer's path if a flat face alone exceeds the largest contact."""
+    if profile.first_radius > LARGEST * layer.thickness:
+        detail = f"must be at least 1/{LARGEST:g} of the radius of the flat face"
+        raise InputError((*path, "thickness"), detail)
 
 
 def largest_coordinate(profile: Profile, layer: Layer) -> float:

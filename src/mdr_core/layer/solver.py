@@ -13,7 +13,7 @@ from mdr_core.errors import InputError
 from mdr_core.inversion import invert
 from mdr_core.layer.adhesive import LayerCurve
 from mdr_core.layer.contact import LayerContact
-from mdr_core.layer.equation import allowed, largest_coordinate, states
+from mdr_core.layer.equation import allowed, largest_coordinate, require_flat_within, states
 from mdr_core.layer_response import softening
 from mdr_core.materials import Layer, Material
 from mdr_core.normal import CONTROLS
@@ -70,10 +70,10 @@ def solve(
     softening(layer, np.ones(1))
     # Checks the loads as well.
     name, load = validation.only_one(("load",), loads)
-    reach = allowed(profile, layer)
-    radius = load if name == "contact_radius" else full(profile.first_radius, load)
-    outside = np.asarray(np.maximum(radius, profile.first_radius) > reach.domain)
-    validation.require_inside(("load", name), outside, reach)
+    require_flat_within(profile, layer, ("material", "layer"))
+    if name == "contact_radius":
+        reach = allowed(profile, layer)
+        validation.require_inside(("load", name), np.asarray(load > reach.domain), reach)
     if work_of_adhesion is not None:
         validation.require_single_positive(("material", "work_of_adhesion"), work_of_adhesion)
         c = sqrt(2 * pi) * sqrt(work_of_adhesion) / sqrt(modulus)

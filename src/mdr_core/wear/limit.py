@@ -320,7 +320,7 @@ class LimitingWear(validity.ContactResults):
         }
         codes = [code for code, flags in raised.items() if some(flags)]
         own = [Notice(code, _WARNINGS[code], instead=_INSTEAD.get(code)) for code in codes]
-        return (*self.tangential_contact.warnings_without_bodies, *own)
+        return (*self.normal.warnings_with(self.error_estimate), *own)
 
 
 def solve(

@@ -214,5 +214,5 @@ def _from(
         (0.0, normal.contact_radius, slip_width),
     )
     parts = [where(rests, still, where(slides, lost, found)) for still, lost, found in cases]
-    parts += [separated & loaded, unbounded & loaded, width_error, error]
+    parts += [separated & loaded, unbounded & loaded, where(rests, 0.0, width_error), error]
     return LimitingStick(*(broadcast(part, contact.width.shape) for part in parts))

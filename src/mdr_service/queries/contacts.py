@@ -52,6 +52,9 @@ def solve_normal(query: NormalQuery | LoadedQuery | WearQuery | TorsionQuery) ->
     if given and "maximum_pressure" in arguments:
         detail = "is undetermined with adhesion, under tension at the edge: give another load"
         raise InputError(("load", "maximum_pressure"), detail)
+    if query.material.has("layer") and "maximum_pressure" in arguments:
+        detail = "is not a load of a contact with a layer: give the depth, force or contact radius"
+        raise InputError(("load", "maximum_pressure"), detail)
     solve: Any = adhesion.solve if given else normal_contact.solve
     solve = layer.solve if query.material.has("layer") else solve
     contact: NormalContact = solve(**arguments, **given)
@@ -95,9 +98,13 @@ def _by_parameters(kind: str, **given: Any) -> profiles.Profile:
 def body(query: Query) -> Arguments:
     """Return profile and material, as arguments of the core.
 
-    Raises InputError if adhesion is combined with friction or yield, or has a range but no work.
+    Raises InputError if adhesion is combined with friction or yield, or has a range but no work,
+    and if yield is to be checked under a twist, whose stresses in the bodies are not computed.
     """
     material = query.material
+    if isinstance(query, TorsionQuery) and material.has("yield_strength"):
+        detail = "is not checked under a twist: leave it out, and check the contact by /v1/normal"
+        raise InputError(("material", "yield_strength"), detail)
     if material.has("layer"):
         other = not isinstance(query, NormalQuery | StressQuery) or material.has("yield_strength")
         if other or query.has("friction_coefficient"):
