@@ -181,7 +181,7 @@ def _open(
 
     def within(place: float) -> bool:
         reduced, *_ = model.reduced(model.depth - place, 0.0)
-        return model.linear(reduced)[0] <= least
+        return bool(model.linear(reduced)[0] <= least)
 
     if within(model.farthest):
         detail = (
