@@ -34,7 +34,7 @@ _RETRACTIONS: Final = np.logspace(-3, 0.5, 15)
 _GRID: Final = 500
 # Least c = (2 pi w/E*)^(1/2) over the root of the range of depths, at which the contact is that
 # without adhesion to rounding, and has its slope in w.
-_LEAST_C: Final = 1e-6
+LEAST_C: Final = 1e-6
 
 Parameters = dict[str, float]
 """Values of `PARAMETERS` by name."""
@@ -85,7 +85,7 @@ class Model:
     @property
     def least_ratio(self) -> float:
         """Least w/E* that is fitted [length]."""
-        return _LEAST_C**2 * float(np.ptp(self.depth)) / (2 * pi)
+        return LEAST_C**2 * float(np.ptp(self.depth)) / (2 * pi)
 
     def require_points(self, touching: int) -> None:
         """Raise InputError unless more points are in contact than parameters are fitted."""
