@@ -29,6 +29,8 @@ _DETACHED: Final = 3
 _SEEN: Final = 3.0
 # Increase of the sum of squares, over the variance of the noise, up to which w = 0 is as likely.
 _NO_WORSE: Final = 0.1
+# The same, up to which w has the error that w = 0 shows: that by the slopes is too small there.
+_FAR: Final = 9.0
 # Bisections of the decades of the largest work of adhesion.
 _HALVINGS: Final = 12
 # Quantile of a one-sided limit of 95 %.
@@ -36,16 +38,38 @@ _LIMIT: Final = 1.645
 
 
 def solve(curve: Model) -> Fit:
-    """Return the fit with adhesion, or with w held at 0 where this is as likely."""
+    """Return the fit, with the warning that nothing tells its offset from the adhesion."""
     model, found = _touching(curve)
+    fit = _fit(curve, model, found)
+    error = fit.standard_errors[fit.fit.index("work_of_adhesion")]
+    is_told = not model.touches.all() or fit.work_of_adhesion > _LIMIT * error
+    if "force_offset" not in fit.fit or is_told:
+        return fit
+    message = (
+        "the curve hardly determines force_offset beside work_of_adhesion: include at least "
+        f"{_DETACHED} points after the pull-off, or leave force_offset out of the fit"
+    )
+    return replace(fit, notices=(*fit.notices, Notice("undetermined", message)))
+
+
+def _fit(curve: Model, model: Model, found: Parameters) -> Fit:
+    """Return the fit with adhesion, or with w held at 0 where this is as likely."""
     least = max(model.squares(found), _rounding(model))
     others = tuple(name for name in curve.fit if name != "work_of_adhesion")
     without, at_zero = replace(model, fit=others), inf
     # Without adhesion a curve of tension alone does not rise.
     with suppress(InputError):
         at_zero = without.squares(zero := without.best())
-    if at_zero - least > _NO_WORSE * least / model.free:
-        return result(model, found)
+    excess, place = (at_zero - least) / least * model.free, curve.fit.index("work_of_adhesion")
+    if excess > _NO_WORSE:
+        fit = result(model, found)
+        errors, correlation = fit.standard_errors, fit.correlation
+        growth = found["work_of_adhesion"] / sqrt(excess) / errors[place]
+        if excess > _FAR or growth <= 1:
+            return fit
+        changes = sqrt(growth**2 - 1) * correlation[place] * errors
+        errors, correlation = both(errors, correlation, changes)
+        return replace(fit, standard_errors=errors, correlation=correlation)
     whole = replace(curve, fit=others)
     # The points that are left out may show adhesion.
     if not _is_noise(without, zero, whole, values := whole.best()):
@@ -53,7 +77,6 @@ def solve(curve: Model) -> Fit:
     held = result(whole, values)
     limit = at_zero + least / model.free * _LIMIT**2
     work, changes = _largest(without, zero, limit)
-    place = curve.fit.index("work_of_adhesion")
     errors, correlation = both(
         np.insert(held.standard_errors, place, 0.0),
         np.insert(np.insert(held.correlation, place, 0.0, axis=0), place, 0.0, axis=1),
@@ -169,8 +192,8 @@ def _touching(curve: Model) -> tuple[Model, Parameters]:
     if not count:
         pull_off = _states(curve, found).least["indentation_depth"]
         after = int(np.searchsorted(depth, found["contact_point"] + _AFTER * pull_off))
-        if min(after, least) >= _DETACHED:
-            model, found = extended(model, found, min(after, least), least)
+        if after >= _DETACHED:
+            model, found = extended(model, found, after, max(after, least))
             count = int(np.sum(~model.touches))
     near = int(np.searchsorted(depth, _least_stable(model, found)))
     first = max(near, jump, count)
