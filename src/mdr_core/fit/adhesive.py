@@ -183,18 +183,18 @@ def _touching(curve: Model) -> tuple[Model, Parameters]:
 
     jump = int(np.argmin(np.diff(force[:least]))) + 1 if least > 1 else 0
     model = with_detached(0, least)
-    found, count = model.best(), 0
+    found = model.best()
     if jump >= _DETACHED:
         whole, joint = extended(model, found, jump, least)
         drop = -joint["e_star"] * _states(curve, joint).least["normal_force"]
         if whole is not model and drop > _SEEN * sqrt(whole.squares(joint) / whole.free):
-            model, found, count = whole, joint, jump
-    if not count:
+            model, found = whole, joint
+    if model.touches.all():
         pull_off = _states(curve, found).least["indentation_depth"]
         after = int(np.searchsorted(depth, found["contact_point"] + _AFTER * pull_off))
         if after >= _DETACHED:
             model, found = extended(model, found, after, max(after, least))
-            count = int(np.sum(~model.touches))
+    count = int(np.sum(~model.touches))
     near = int(np.searchsorted(depth, _least_stable(model, found)))
     first = max(near, jump, count)
     return extended(model, found, count, first) if first < least else (model, found)

@@ -156,13 +156,12 @@ class Model:
         mean, middle = np.zeros_like(reduced[..., :1]), 0.0
         if "force_offset" in self.fit:
             mean, middle = reduced.mean(axis=-1, keepdims=True), float(self.force.mean())
-        top = float(np.abs(reduced).max()) or 1.0
-        x, y = (reduced - mean) / top, self.force - middle
-        modulus = np.full(mean.shape, (self.e_star or 0.0) * top)
-        if "e_star" in self.fit:
+        x, y = reduced - mean, self.force - middle
+        modulus = np.full(mean.shape, self.e_star or 0.0)
+        if self.e_star is None:
             size = np.sum(x * x, axis=-1, keepdims=True)
             modulus = np.sum(x * y, axis=-1, keepdims=True) / np.where(size, size, 1.0)
-        squares, modulus = np.sum(np.square(y - modulus * x), axis=-1), modulus / top
+        squares = np.sum(np.square(y - modulus * x), axis=-1)
         return squares, modulus[..., 0], middle - (modulus * mean)[..., 0]
 
     def best(self) -> Parameters:
