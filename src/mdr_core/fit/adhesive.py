@@ -16,7 +16,7 @@ from mdr_core.errors import InputError, Notice
 from mdr_core.estimation import Precision
 from mdr_core.fit.model import LEAST_C, Model, Parameters
 from mdr_core.fit.result import Fit, both, result
-from mdr_core.residuals import FALSE_ALARM, ROUNDING
+from mdr_core.residuals import ROUNDING
 from mdr_core.typing import Array
 
 # Multiple of the pull-off depth beyond which no point is in contact.
@@ -31,6 +31,8 @@ _SEEN: Final = 3.0
 _NO_WORSE: Final = 0.1
 # The same, up to which w has the error that w = 0 shows: that by the slopes is too small there.
 _FAR: Final = 9.0
+# Probability by chance below which points do not belong to a fit: each curve has several tests.
+_CHANCE: Final = 1e-4
 # Bisections of the decades of the largest work of adhesion.
 _HALVINGS: Final = 12
 # Quantile of a one-sided limit of 95 %.
@@ -119,7 +121,7 @@ def _is_noise(model: Model, found: Parameters, more: Model, joint: Parameters) -
     added = max(more.depth.size - model.depth.size, 1)
     squares = max(model.squares(found), _rounding(model))
     increase = max(more.squares(joint) - squares, 0.0) / squares * model.free / added
-    return bool(fdtrc(added, model.free, increase) > FALSE_ALARM)
+    return bool(fdtrc(added, model.free, increase) > _CHANCE)
 
 
 def _rounding(model: Model) -> float:
