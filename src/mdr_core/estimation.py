@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import inf
-from typing import ClassVar, Self
+from typing import ClassVar, Final, Self
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -21,6 +21,8 @@ from mdr_core.typing import Array
 # same effect, and the least part of a parameter in that effect. Rounding leaves 1e-16; fits that
 # determine their parameters have 1e-6 or more.
 _SAME, _PART = 1e-8, 0.1
+# Relative decrease of the sum of squares at which Gauss-Newton steps take over.
+_DECREASE: Final = 1e-9
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -138,7 +140,7 @@ def minimum(model: Callable[[Array], tuple[Array, Array]], first: Array, bounds:
     found = least_squares(
         *(lambda x: at(x.tobytes())[0], first, lambda x: at(x.tobytes())[1], tuple(bounds)),
         x_scale="jac",
-        ftol=EPS,
+        ftol=_DECREASE,
         xtol=EPS,
         gtol=None,
     )

@@ -145,6 +145,52 @@ def test_adhesion_alone_is_held_at_zero() -> None:
     assert found.standard_errors.min() > 0
 
 
+#: Contact radius -> depth and force without adhesion, with E* = 1.
+CLOSED = {
+    "ball": (BALL, lambda a: (a**2, 4 / 3 * a**3)),
+    "cone": (mdr.Cone(0.5), lambda a: (np.pi / 4 * a, np.pi / 4 * a**2)),
+}
+
+
+def retraction(shape: str, c: float, start: float, count: int) -> tuple[Array, Array]:
+    """Depths and forces of JKR from a depth to 1, without a contact below the least depth."""
+    radii = np.geomspace(1e-4, 3, 100_000)
+    depth, force = CLOSED[shape][1](radii)
+    depth, force = depth - c * np.sqrt(radii), force - 2 * c * radii**1.5
+    least = int(depth.argmin())
+    depths = np.linspace(start, 1, count)
+    inside = np.interp(depths, depth[least:], force[least:])
+    return depths, np.where(depths > depth[least], inside, 0.0)
+
+
+@pytest.mark.parametrize("shape", CLOSED)
+def test_states_that_only_a_stiff_instrument_holds_do_not_bias_the_fit(shape: str) -> None:
+    c, names = 0.5, (*fit.PARAMETERS,)
+    depth, force = retraction(shape, c, -1.0, 100)
+    for seed in range(3):
+        noisy = force + noise(np.random.default_rng(seed), force, 0.003)
+        found = fit.solve(
+            CLOSED[shape][0], indentation_depth=depth, normal_force=noisy + 0.1, fit=names
+        )
+        values = np.array([getattr(found, name) for name in names])
+        off = (values - [1, 0, 0.1, c**2 / (2 * np.pi)]) / found.standard_errors
+        assert np.abs(off).max() < 4
+
+
+def test_errors_with_adhesion_held_at_zero_cover_a_weak_adhesion() -> None:
+    c, names = 0.05, ("e_star", "contact_point", "work_of_adhesion")
+    depth, force = retraction("cone", c, 0.0, 100)
+    off = []
+    for seed in range(10):
+        noisy = force + noise(np.random.default_rng(seed), force, 0.003)
+        found = fit.solve(CLOSED["cone"][0], indentation_depth=depth, normal_force=noisy, fit=names)
+        if "bound" in {notice.code for notice in found.warnings}:
+            values = np.array([getattr(found, name) for name in names])
+            off.append((values - [1, 0, c**2 / (2 * np.pi)]) / found.standard_errors)
+    assert off
+    assert np.abs(off).max() < 2
+
+
 def test_point_that_decides_alone_is_named() -> None:
     # The contact, and a single point far before it, on which the offset rests.
     depth = np.append(-1.0, np.linspace(0.9, 1, 20))

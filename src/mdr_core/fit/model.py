@@ -30,9 +30,11 @@ _POINTS, _WITHIN, _BEFORE = 100, 50, 20
 _NEAREST, _FARTHEST, _FARTHEST_ADHESIVE = 1e-3, 1e4, 1.0
 # Retractions that are tried first, at the contact radius of the whole range of depths and over it.
 _RETRACTIONS: Final = np.logspace(-3, 0.5, 15)
+# Depths between which the force with adhesion is linear for the first values.
+_GRID: Final = 500
 # Least c = (2 pi w/E*)^(1/2) over the root of the range of depths, at which the contact is that
 # without adhesion to rounding, and has its slope in w.
-_LEAST_C: Final = 1e-6
+LEAST_C: Final = 1e-6
 
 Parameters = dict[str, float]
 """Values of `PARAMETERS` by name."""
@@ -83,7 +85,7 @@ class Model:
     @property
     def least_ratio(self) -> float:
         """Least w/E* that is fitted [length]."""
-        return _LEAST_C**2 * float(np.ptp(self.depth)) / (2 * pi)
+        return LEAST_C**2 * float(np.ptp(self.depth)) / (2 * pi)
 
     def require_points(self, touching: int) -> None:
         """Raise InputError unless more points are in contact than parameters are fitted."""
@@ -115,7 +117,8 @@ class Model:
 
     def _adhesive(self, pressed: Array, ratio: float) -> tuple[Array, Array, Array]:
         force, by_depth, by_ratio = np.zeros((3, *pressed.shape))
-        c, at = sqrt(2 * pi * ratio), np.broadcast_to(self.touches, pressed.shape)
+        c = sqrt(2 * pi * ratio)
+        at = self.touches if pressed.shape == self.touches.shape else np.ones(pressed.shape, bool)
         # A contact that would spread beyond the profile fits nothing.
         with suppress(InputError):
             curve = adhesion.Curve(self.profile, c)
@@ -148,15 +151,18 @@ class Model:
         """Return the sum of squares of the residuals."""
         return float(np.sum(np.square(self.at(parameters)[0] - self.force)))
 
-    def linear(self, reduced: Array) -> tuple[float, float, float]:
-        """Return the least squares, modulus and offset for forces over E*."""
-        top = float(np.abs(reduced).max()) or 1.0
-        columns = np.column_stack([reduced / top, np.ones_like(reduced)])
-        values = np.array([(self.e_star or 0.0) * top, 0.0])
-        free = ["e_star" in self.fit, "force_offset" in self.fit]
-        values[free], *_ = np.linalg.lstsq(columns[:, free], self.force - columns @ values)
-        left = self.force - columns @ values
-        return float(left @ left), float(values[0]) / top, float(values[1])
+    def linear(self, reduced: Array) -> tuple[Array, Array, Array]:
+        """Return the least squares, moduli and offsets for forces over E*, shape (..., k)."""
+        mean, middle = np.zeros_like(reduced[..., :1]), 0.0
+        if "force_offset" in self.fit:
+            mean, middle = reduced.mean(axis=-1, keepdims=True), float(self.force.mean())
+        x, y = reduced - mean, self.force - middle
+        modulus = np.full(mean.shape, self.e_star or 0.0)
+        if self.e_star is None:
+            size = np.sum(x * x, axis=-1, keepdims=True)
+            modulus = np.sum(x * y, axis=-1, keepdims=True) / np.where(size, size, 1.0)
+        squares = np.sum(np.square(y - modulus * x), axis=-1)
+        return squares, modulus[..., 0], middle - (modulus * mean)[..., 0]
 
     def best(self) -> Parameters:
         """Return the parameters of the least sum of squares, or an InputError."""
@@ -176,14 +182,20 @@ class Model:
         some = np.argsort(self.depth)[:: max(1, self.depth.size // _POINTS)]
         used = {name: getattr(self, name)[some] for name in ("depth", "force", "touches")}
         coarse = replace(self, **used)
-        starts: list[tuple[float, Parameters]] = []
+        pressed = coarse.depth - tried[:, None]
+        grid = np.linspace(pressed.min(), pressed.max(), _GRID)
+        found = []
         for ratio in ratios.tolist():
-            forces, *_ = coarse.reduced(coarse.depth - tried[:, None], ratio)
-            for point, reduced in zip(tried.tolist(), forces, strict=True):
-                squares, modulus, offset = coarse.linear(reduced)
-                values = modulus, point, offset, ratio * modulus
-                starts.append((squares, dict(zip(PARAMETERS, values, strict=True))))
-        _, start = min(starts, key=lambda each: each[0])
+            if ratio:
+                forces = np.interp(pressed, grid, coarse.reduced(grid, ratio)[0])
+                forces = np.where(coarse.touches, forces, 0.0)
+            else:
+                forces = coarse.reduced(pressed, ratio)[0]
+            squares, modulus, offset = coarse.linear(forces)
+            place = int(squares.argmin())
+            values = modulus[place], tried[place], offset[place], ratio * modulus[place]
+            found.append((squares[place], dict(zip(PARAMETERS, map(float, values), strict=True))))
+        _, start = min(found, key=lambda each: each[0])
         if start["e_star"] <= 0:
             detail = "does not rise as on this profile: compression is positive, reverse its sign"
             raise InputError(("normal_force",), detail)

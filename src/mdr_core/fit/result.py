@@ -96,7 +96,11 @@ def result(model: Model, found: Parameters) -> Fit:
     contact = _deepest(model, found)
     interpolated = 0.0 if model.on_layer is None else model.on_layer.error
     code, misfit = _misfit(model, precision.q, residual)
-    errors, correlation = _errors(model, found, precision, model.noise or scatter)
+    errors, correlation = (model.noise or scatter) * precision.deviations, precision.correlation
+    if model.drift_error.any():
+        _, by_contact_point = replace(model, fit=("contact_point",)).at(found)
+        by_drift = precision.changes(by_contact_point[:, 0] * model.drift_error)
+        errors, correlation = both(errors, correlation, by_drift)
     return Fit(
         fit=model.fit,
         normal=contact,
@@ -119,20 +123,13 @@ def result(model: Model, found: Parameters) -> Fit:
     )
 
 
-def _errors(
-    model: Model, found: Parameters, precision: Precision, noise: float
-) -> tuple[Array, Array]:
-    """Return the standard errors and correlation due to noise and the error of the drift rate."""
-    errors, correlation = noise * precision.deviations, precision.correlation
-    if not model.drift_error.any():
-        return errors, correlation
-    _, by_contact_point = replace(model, fit=("contact_point",)).at(found)
-    by_drift = precision.changes(by_contact_point[:, 0] * model.drift_error)
-    both = np.hypot(errors, by_drift)
-    shares = np.outer(errors / both, errors / both), np.outer(by_drift / both, by_drift / both)
+def both(errors: Array, correlation: Array, changes: Array) -> tuple[Array, Array]:
+    """Return standard errors and correlation with those of one more error, of given changes."""
+    sums = np.hypot(errors, changes)
+    shares = np.outer(errors / sums, errors / sums), np.outer(changes / sums, changes / sums)
     correlation = correlation * shares[0] + shares[1]
     np.fill_diagonal(correlation, 1.0)
-    return both, correlation
+    return sums, correlation
 
 
 def _deepest(model: Model, found: Parameters) -> NormalContact:
@@ -187,7 +184,7 @@ def _open(
 
     def within(place: float) -> bool:
         reduced, *_ = model.reduced(model.depth - place, 0.0)
-        return model.linear(reduced)[0] <= least
+        return bool(model.linear(reduced)[0] <= least)
 
     if within(model.farthest):
         detail = (
