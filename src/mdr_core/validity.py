@@ -11,7 +11,7 @@ import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from importlib.resources import files
-from typing import Any, ClassVar, Final, NamedTuple, TypeAlias
+from typing import Any, ClassVar, Final, NamedTuple, Protocol
 
 import numpy as np
 
@@ -85,9 +85,19 @@ def _above_limit(
     return Finding(code, size > _ROOM * limit, message, size, limit, instead)
 
 
-SolvedContact: TypeAlias = Any
-"""A contact with or without friction, or a load history: it has `normal`, `g_star`, `slips_from`,
-`solved`, and `warnings_without_bodies`."""
+class SolvedContact(Protocol):
+    """A contact with or without friction, on whose bodies its validity depends."""
+
+    @property
+    def normal(self) -> LoadedContact: ...
+    @property
+    def g_star(self) -> Parameter | None: ...
+    @property
+    def slips_from(self) -> Parameter: ...
+    @property
+    def solved(self) -> "SolvedContact": ...
+    @property
+    def warnings_without_bodies(self) -> tuple[Notice, ...]: ...
 
 
 class ContactResults(Results):
@@ -140,12 +150,12 @@ class ResultsOverLoads(ContactResults):
     """Results of a contact under each of many loads, with an `error_estimates` over them."""
 
     @property
-    def error_estimate(self: SolvedContact) -> float:
+    def error_estimate(self: Any) -> float:
         """Largest of `error_estimates` [1]."""
         return extremes(self.error_estimates)[1]
 
     @property
-    def warnings_without_bodies(self: SolvedContact) -> tuple[Notice, ...]:
+    def warnings_without_bodies(self: Any) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
         return tuple(notices([*self.normal.findings, inaccurate(self.error_estimate)]))
 

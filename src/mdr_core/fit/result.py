@@ -9,7 +9,7 @@ from typing import ClassVar, Final
 import numpy as np
 from scipy.special import chdtrc, stdtrit
 
-from mdr_core import adhesion, normal, residuals
+from mdr_core import adhesion, normal, residuals, validity
 from mdr_core import layer as layers
 from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
@@ -78,8 +78,7 @@ class Fit(LeastSquaresFit):
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies."""
         found = [each for each in self.normal.warnings_without_bodies if each.code != "accuracy"]
-        if self.error_estimate > normal.ACCURACY:
-            found.append(normal.inaccurate(self.error_estimate))
+        found += validity.notices([validity.inaccurate(self.error_estimate)])
         return *found, *self.notices
 
 

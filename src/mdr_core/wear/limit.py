@@ -320,7 +320,8 @@ class LimitingWear(validity.ContactResults):
         }
         codes = [code for code, flags in raised.items() if some(flags)]
         own = [Notice(code, _WARNINGS[code], instead=_INSTEAD.get(code)) for code in codes]
-        return (*self.normal.warnings_with(self.error_estimate), *own)
+        found = [*self.normal.findings, validity.inaccurate(self.error_estimate)]
+        return (*validity.notices(found), *own)
 
 
 def solve(
