@@ -51,7 +51,8 @@ def test_area_function_is_known_by_the_unit_or_the_name_of_the_area(heading: str
     table = parse(f"{heading}\n{rows}".encode(), PROFILE)
     assert [unit and unit[2] for _, unit, *_ in table.titles] == [1e-9, 1e-6]
     assert table.taken == {1: "area", 0: "height"}
-    assert table.values[0] == pytest.approx([(each / math.pi) ** 0.5 for each in area], rel=1e-15)
+    radii = [(each / math.pi) ** 0.5 for each in area]
+    assert table.values[0] == pytest.approx(radii, rel=1e-15, abs=0)
     assert table.values[1] == [10.0, 20.0, 30.0]
 
 
