@@ -56,7 +56,7 @@ class Traction(NamedTuple):
         The i-th integral goes over the part of the i-th annulus beyond r.
         """
         result = np.zeros(r.shape)
-        for i in np.flatnonzero(self.slope).tolist():
+        for i in self.slope.nonzero()[0].tolist():
             a = self.radius[i + 1]
             ends = self.coordinate[i + 1], self.width[i], self.radius[i], a if self.exact else None
             annulus, inside = Annulus(*ends, self.coordinate[i]), r < a
