@@ -2,16 +2,18 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf
+from math import inf, pi
 from typing import ClassVar, Final
 
 import numpy as np
 
-from mdr_core.doubles import EPS
+from mdr_core.abel.annulus import Annulus, inverse_hypot
+from mdr_core.doubles import EPS, TINY
 from mdr_core.profiles.base import Profile
 from mdr_core.profiles.cancellation_free import tanh_gap
 from mdr_core.profiles.power_law_integral import power_law_integral
-from mdr_core.typing import Array, Flags, Parameter
+from mdr_core.quadrature import integrate
+from mdr_core.typing import Array, Flags, Indices, Parameter
 
 # Up to this a/R, h = g'(x)/x rises no faster than x. At 0.6412 a h'(a) = h(a): there the sum of (2k
 # + 2)(2k - 1)/(2k + 1) t^2k over k >= 1 equals 2.
@@ -73,6 +75,37 @@ class Spheroid(Profile):
         t = coordinate / self.radius
         bracket = t * t * t + (1 + t * t) * tanh_gap(self._artanh(coordinate))
         return self.height * self.radius * bracket
+
+    def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
+        """(h/(pi R)) [sqrt(1 + z_r^2) y + int arcsinh(z)/(z cosh y) dy] from y(c) to y(a).
+
+        With z = x/sqrt(R^2 - x^2) and z^2 + 1 = (z_r^2 + 1) cosh^2 y both the root at r and the
+        pole at R vanish, and the pole's part is elementary.
+
+        Source: notes, §2. Parameters: see `Profile`.
+        """
+        a, width, c, *_ = annulus
+        r, big, low = radius, self.radius, np.maximum(c, radius)
+        square, rest_a, rest_low = ((big - x) * (big + x) for x in (r, a, low))
+        stretch, tilt2 = big / np.sqrt(square), r * r / square
+
+        def h(y: Array, index: Indices) -> Array:
+            # arcsinh(z)/q for q = z sqrt(1 + z^2), evaluated with one root and one logarithm.
+            z2 = np.sinh(y, out=y)
+            z2 *= stretch[index]
+            z2 *= z2
+            z2 += tilt2[index]
+            q = np.sqrt(z2 * (1 + z2))
+            return np.log1p(2 * (z2 + q)) / (2 * q)
+
+        top = inverse_hypot(a, r) / np.sqrt(rest_a)
+        bottom = inverse_hypot(low, r) / np.sqrt(rest_low)
+        # arcsinh(top) - arcsinh(bottom), free of cancellation.
+        covered = np.where(c > r, width * (a + c), (a - r) * (a + r)) / rest_a / rest_low
+        sums = np.maximum(top / np.sqrt(rest_low) + bottom / np.sqrt(rest_a), TINY)
+        start, length = np.arcsinh(bottom), np.arcsinh(covered * np.sqrt(square) / sums)
+        smooth = integrate(h, length, start)
+        return self.height / (pi * big) * stretch * (length + smooth)
 
     def _integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
         """Over v = artanh(x/R), which resolves the pole at the equator. See `Profile`."""

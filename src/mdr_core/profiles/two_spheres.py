@@ -5,7 +5,9 @@ from typing import ClassVar, Final
 
 import numpy as np
 
+from mdr_core.abel.annulus import Annulus
 from mdr_core.errors import InputError
+from mdr_core.profiles.base import Profile
 from mdr_core.profiles.spheroids import Spheroid
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import as_numbers, require_finite
@@ -120,6 +122,9 @@ class TwoSpheres(Spheroid):
     def reduced_force(self, coordinate: Array) -> Array:
         """2 int_0^a x g'(x) dx, because closed forms cancel in a socket. See `Profile`."""
         return self._integral(lambda x: 2 * x * self.dg(x), coordinate)
+
+    def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
+        return Profile.pressure_kernel(self, annulus, radius)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return coordinate <= _SHALLOW * self.radius
