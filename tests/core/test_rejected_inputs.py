@@ -78,7 +78,7 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
     (
         lambda: tangential.solve(HERTZ, 1.0, [[0.5] * 3], stick_radius=0.05),
         ("tangential", "stick_radius"),
-        "shape",
+        "1, does not agree with the normal loads, 2 and 1 x 3: give one, or as many",
     ),
     (
         normal_contact(Cone(np.ones(3)), normal_force=[1.0, 2.0]),
