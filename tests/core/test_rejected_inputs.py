@@ -149,6 +149,15 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
         "single number",
     ),
     (
+        lambda: wear.limit.solve(
+            normal.solve(Paraboloid(1.0), 1.0, maximum_pressure=0.03),
+            *(1.0, 0.5),
+            tangential_displacement=1e-3,
+        ),
+        ("load", "maximum_pressure"),
+        "prescribe the depth or the normal force",
+    ),
+    (
         lambda: wear.limit.solve(SWEPT, 1.0, 0.5, tangential_force=0.0),
         ("profile", "radius"),
         "single number",
