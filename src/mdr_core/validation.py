@@ -202,12 +202,13 @@ def common_shape(
 
     `others` is the word for the other values.
     """
-    shapes = [getattr(value, "shape", ()) for value in values]
+    shapes = [given.shape, *(getattr(value, "shape", ()) for value in values)]
     try:
-        return np.broadcast_shapes(given.shape, *shapes)
+        return np.broadcast_shapes(*shapes)
     except ValueError:
-        listed = ", ".join(str(shape) for shape in shapes if shape)
-        detail = f"the shape {given.shape} does not agree with {others}, {listed}"
+        own, *known = [" x ".join(map(str, shape)) for shape in shapes]
+        listed = " and ".join(filter(None, known))
+        detail = f"the number of values, {own or 1}, does not agree with {others}, {listed}"
         raise InputError(path, f"{detail}: give one, or as many") from None
 
 

@@ -172,6 +172,8 @@ class Parameters(ResponseParameters):
         if place in self.fields.values():
             # The field has another name as a parameter: `r` for the radius of fields.
             detail = re.sub(rf"\b{place.rpartition('.')[2]}\b", name, detail)
+        # Parameters are not in objects.
+        detail = detail.replace("an object of exactly one of", "exactly one of")
         return problems.pointer([name]), re.sub(r"\bbodies\b", _BODIES, detail)
 
     def _parameter(self, place: str) -> str:

@@ -84,7 +84,7 @@ def specified(arguments: Namespace) -> tuple[Spec, Source]:
     query = arguments.query
     template = _template(arguments.template)
     axes = {name: text for name, text in template.items() if str(text).count(":") >= 2}
-    axes |= {each.partition("=")[0]: each.partition("=")[2] for each in arguments.grid}
+    axes |= dict(map(_axis, arguments.grid))
     if bool(axes) == bool(arguments.table):
         raise UsageError("give one of --table and axes (--grid, or START:STOP:N in the template)")
     if any(number is not None and number < 1 for number in (arguments.workers, arguments.chunk)):
@@ -155,6 +155,13 @@ def _template(path: Path | None) -> dict[str, Any]:
     if not isinstance(request, Mapping):
         raise UsageError(f"{path} does not hold a JSON object")
     return flat(request)
+
+
+def _axis(text: str) -> tuple[str, str]:
+    name, sign, values = text.partition("=")
+    if not sign:
+        raise UsageError(f"--grid: {text!r} is not FIELD=START:STOP:N")
+    return name, values
 
 
 def _names(text: str) -> tuple[str, ...]:

@@ -52,15 +52,19 @@ class Table:
     """Cases in a file: Parquet, or CSV, whose cells are all read as text."""
 
     def __init__(self, path: Path) -> None:
+        is_parquet = path.suffix == ".parquet"
         try:
-            if path.suffix == ".parquet":
+            read = pv.ReadOptions(use_threads=False)
+            names = (pq.read_schema(path) if is_parquet else pv.open_csv(path, read).schema).names
+            if len(set(names)) < len(names):
+                raise UsageError(f"{path} has two columns {max(names, key=names.count)}")
+            if is_parquet:
                 # Read-ahead would keep everything that was read in memory to the end.
                 options = ds.ParquetFragmentScanOptions(pre_buffer=False)
                 form: ds.FileFormat = ds.ParquetFileFormat(default_fragment_scan_options=options)
                 self._data = ds.dataset(path, format=form)
                 self.rows = self._data.count_rows()
             else:
-                names = ds.dataset(path, format="csv").schema.names
                 convert = pv.ConvertOptions(strings_can_be_null=True, null_values=[""])
                 schema = pa.schema([(name, pa.string()) for name in names])
                 form = ds.CsvFileFormat(convert_options=convert)

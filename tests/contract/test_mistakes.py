@@ -171,7 +171,7 @@ IN_PYTHON: dict[str, tuple[Callable[[], Any], list[str]]] = {
     ),
     "velocities of two shapes": (
         lambda: impact(normal_velocity=np.ones((1, 2)), tangential_velocity=np.ones((2, 3))),
-        ["tangential_velocity", "(2, 3)", "(1, 2)"],
+        ["tangential_velocity", "2 x 3", "1 x 2"],
     ),
     "several masses": (
         lambda: impact(normal_mass=[1.0, 2.0]),

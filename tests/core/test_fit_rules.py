@@ -191,6 +191,24 @@ def test_errors_with_adhesion_held_at_zero_cover_a_weak_adhesion() -> None:
     assert np.abs(off).max() < 2
 
 
+@pytest.mark.parametrize(("start", "size"), [(-1.0, 0.03), (0.05, 0.003)])
+def test_offset_beside_adhesion_is_determined_by_points_before_contact(
+    start: float, size: float
+) -> None:
+    # The larger noise hides the pull-off.
+    depth, force = retraction("ball", 0.05, start, 60)
+    for seed in range(8):
+        noisy = force + noise(np.random.default_rng(seed), force, size)
+        found = fit.solve(
+            BALL, indentation_depth=depth, normal_force=noisy + 0.1, fit=fit.PARAMETERS
+        )
+        warned = "undetermined" in {notice.code for notice in found.warnings}
+        assert warned == (start > 0)
+        error = found.standard_errors[found.fit.index("force_offset")]
+        assert abs(found.force_offset - 0.1) < 4 * error
+        assert error < 0.2 or warned
+
+
 def test_point_that_decides_alone_is_named() -> None:
     # The contact, and a single point far before it, on which the offset rests.
     depth = np.append(-1.0, np.linspace(0.9, 1, 20))

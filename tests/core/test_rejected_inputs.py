@@ -78,7 +78,7 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
     (
         lambda: tangential.solve(HERTZ, 1.0, [[0.5] * 3], stick_radius=0.05),
         ("tangential", "stick_radius"),
-        "shape",
+        "1, does not agree with the normal loads, 2 and 1 x 3: give one, or as many",
     ),
     (
         normal_contact(Cone(np.ones(3)), normal_force=[1.0, 2.0]),
@@ -147,6 +147,15 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
         lambda: history.unloaded(Paraboloid(np.array([1.0, 2.0])), 1.0, 1.0, 0.5),
         ("profile", "radius"),
         "single number",
+    ),
+    (
+        lambda: wear.limit.solve(
+            normal.solve(Paraboloid(1.0), 1.0, maximum_pressure=0.03),
+            *(1.0, 0.5),
+            tangential_displacement=1e-3,
+        ),
+        ("load", "maximum_pressure"),
+        "prescribe the depth or the normal force",
     ),
     (
         lambda: wear.limit.solve(SWEPT, 1.0, 0.5, tangential_force=0.0),

@@ -247,6 +247,7 @@ def test_invalid_sweep_is_rejected_at_once(
     Path("there.csv").touch()
     Path("latin.csv").write_text("load.normal_force\ncaf\xe9\n", "latin-1")
     Path("twice.csv").write_text("load.normal_force,load.normal_force\n1,2\n")
+    pq.write_table(pa.table([[1.0], [2.0]], ["load.normal_force"] * 2), "twice.parquet")
     Path("folder.csv").mkdir()
     write("unknown.parquet", {"name": ["a"], "load.farce": [1.0], "load.normal_force": [1.0]})
     write("result.parquet", {"contact_radius": [1.0]})

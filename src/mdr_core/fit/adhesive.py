@@ -25,22 +25,22 @@ _AFTER: Final = 1.5
 _NEAR: Final = 2.0
 # Fewest points after a pull-off: one alone would decide on offset and adhesion.
 _DETACHED: Final = 3
-# Pull-off force over the noise, below which the largest jump may be one of the noise.
+# Pull-off force over the noise, below which the largest jump may be due to noise.
 _SEEN: Final = 3.0
 # Increase of the sum of squares, over the variance of the noise, up to which w = 0 is as likely.
 _NO_WORSE: Final = 0.1
-# The same, up to which w has the error that w = 0 shows: that by the slopes is too small there.
+# The same increase, up to which the error of w follows from it: the slopes give too small an error.
 _FAR: Final = 9.0
-# Probability by chance below which points do not belong to a fit: each curve has several tests.
+# Probability by chance, below which points do not belong to a fit. Each curve has several tests.
 _CHANCE: Final = 1e-4
-# Bisections of the decades of the largest work of adhesion.
+# Bisections of the logarithm of the largest work of adhesion.
 _HALVINGS: Final = 12
 # Quantile of a one-sided limit of 95 %.
 _LIMIT: Final = 1.645
 
 
 def solve(curve: Model) -> Fit:
-    """Return the fit, with the warning that nothing tells its offset from the adhesion."""
+    """Return the fit, with a warning if its offset and the adhesion compensate each other."""
     model, found = _touching(curve)
     fit = _fit(curve, model, found)
     error = fit.standard_errors[fit.fit.index("work_of_adhesion")]
@@ -57,8 +57,7 @@ def solve(curve: Model) -> Fit:
 def _fit(curve: Model, model: Model, found: Parameters) -> Fit:
     """Return the fit with adhesion, or with w held at 0 where this is as likely."""
     least = max(model.squares(found), _rounding(model))
-    others = tuple(name for name in curve.fit if name != "work_of_adhesion")
-    without, at_zero = replace(model, fit=others), inf
+    without, at_zero = _without_adhesion(model), inf
     # Without adhesion a curve of tension alone does not rise.
     with suppress(InputError):
         at_zero = without.squares(zero := without.best())
@@ -72,7 +71,7 @@ def _fit(curve: Model, model: Model, found: Parameters) -> Fit:
         changes = sqrt(growth**2 - 1) * correlation[place] * errors
         errors, correlation = both(errors, correlation, changes)
         return replace(fit, standard_errors=errors, correlation=correlation)
-    whole = replace(curve, fit=others)
+    whole = _without_adhesion(curve)
     # The points that are left out may show adhesion.
     if not _is_noise(without, zero, whole, values := whole.best()):
         return result(model, found)
@@ -95,10 +94,10 @@ def _fit(curve: Model, model: Model, found: Parameters) -> Fit:
 
 
 def _largest(model: Model, zero: Parameters, limit: float) -> tuple[float, Array]:
-    """Return the work of adhesion of a sum of squares, and changes of the others from its zero.
+    """Return the largest w within a limit of squares, and how it changes the other parameters.
 
-    At w = 0 slopes in w, and those in the contact point of a cone, are proportional: to the first
-    order they would leave both open.
+    At w = 0 the slopes in w and in the contact point of a cone are proportional: to the first order
+    both would be open.
     """
     low, high, changes = 0.0, -2 * log10(LEAST_C), np.zeros(len(model.fit))
     for _ in range(_HALVINGS):
@@ -114,6 +113,10 @@ def _largest(model: Model, zero: Parameters, limit: float) -> tuple[float, Array
         else:
             low, changes = middle, precision.changes(left)
     return model.least_ratio * zero["e_star"] * 10**low, changes
+
+
+def _without_adhesion(model: Model) -> Model:
+    return replace(model, fit=tuple(name for name in model.fit if name != "work_of_adhesion"))
 
 
 def _is_noise(model: Model, found: Parameters, more: Model, joint: Parameters) -> bool:
@@ -152,9 +155,10 @@ def _least_stable(model: Model, found: Parameters) -> float:
 def _touching(curve: Model) -> tuple[Model, Parameters]:
     """Return the model of the states beyond the least force and after the pull-off, and its fit.
 
-    The latter are all before the largest jump, if they fit the former within their noise; else
-    those that also lie well below the pull-off depth that the former show. The former alone leave
-    it open in noise, as offset, adhesion and contact point compensate.
+    Points after the pull-off are all before the largest jump, if they fit the other states within
+    the noise; else those well below the pull-off depth of a fit of these, or below the contact
+    point of a fit without adhesion. States in contact alone leave the pull-off depth open in noise,
+    as offset, adhesion and contact point compensate.
     """
     order = np.argsort(curve.depth, kind="stable")
     depth, force, drift_error = (
@@ -193,9 +197,14 @@ def _touching(curve: Model) -> tuple[Model, Parameters]:
             model, found = whole, joint
     if model.touches.all():
         pull_off = _states(curve, found).least["indentation_depth"]
-        after = int(np.searchsorted(depth, found["contact_point"] + _AFTER * pull_off))
-        if after >= _DETACHED:
-            model, found = extended(model, found, after, max(after, least))
+        ends = [found["contact_point"] + _AFTER * pull_off]
+        # Noise that hides the pull-off leaves the contact point open, unless adhesion is left out.
+        whole = _without_adhesion(curve)
+        with suppress(InputError):
+            ends.append(_least_stable(whole, whole.best()))
+        for after in np.searchsorted(depth, ends).tolist():
+            if model.touches.all() and after >= _DETACHED:
+                model, found = extended(model, found, after, max(after, least))
     count = int(np.sum(~model.touches))
     near = int(np.searchsorted(depth, _least_stable(model, found)))
     first = max(near, jump, count)

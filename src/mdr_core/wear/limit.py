@@ -369,11 +369,9 @@ def solve(
     [1.2298, 1.4142]
     """
     require_type("contact", contact, NormalContact, "a contact from normal.solve")
-    if contact.control == "contact_radius":
-        raise InputError(
-            ("load", "contact_radius"),
-            "the contact radius changes during wear: prescribe the depth or the normal force",
-        )
+    if contact.control not in {"indentation_depth", "normal_force"}:
+        detail = "changes during wear: prescribe the depth or the normal force"
+        raise InputError(("load", contact.control), detail)
     require_single_profile(contact.profile.swept)
     name, size = one_amplitude(tangential_displacement, tangential_force)
     unworn = tangential.solve(contact, g_star, friction_coefficient, **{name: size})

@@ -15,11 +15,11 @@ def solve_fit(query: FitQuery) -> Fit:
     The standard errors hold for independent errors of the forces of equal size. A warning tells
     that the residuals are not such noise: `two_branches` (give a `segment`), `noise_grows`,
     `correlated_noise`, or `misfit` where the shape or the model is wrong. Others tell that one
-    point decides (`one_point`), that the interval of the contact point is lopsided
-    (`undetermined`), or that no adhesion is seen (`bound`). With `poissons_ratio` the response has
-    Young's modulus of the sample. With `time` a drift can be subtracted from the depths: `drift`
-    takes it from the last hold in the lower half of the forces, `drift_rate` prescribes it. The
-    standard errors include the error of the rate.
+    point decides (`one_point`), that the interval of the contact point is lopsided or an offset
+    compensates adhesion (`undetermined`), or that no adhesion is seen (`bound`). With
+    `poissons_ratio` the response has Young's modulus of the sample. With `time` a drift can be
+    subtracted from the depths: `drift` takes it from the last hold in the lower half of the forces,
+    `drift_rate` prescribes it. The standard errors include the error of the rate.
 
     `error_estimate` is the numerical error of the parameters.
     """

@@ -200,7 +200,7 @@ class HistoryAnswer(SolvedAnswer):
     dissipated_energy: list[float] = _energy("Dissipated energy, by slip since the start")
     elastic_energy: list[float] = _energy("Elastic energy, of the normal load")
     tangential_energy: list[float] = _energy("Elastic energy of the tangential load")
-    regime: list[Regime] = Field(description="Slip regime of the sample.")
+    regime: list[Regime] = Field(description="Slip regime, by sample.")
     slip_fronts: list[float] = _length(
         "Radii of the slip fronts at the end, ascending; `error_estimate` does not cover them"
     )
@@ -218,8 +218,12 @@ class ImpactAnswer(SolvedAnswer):
 
     normal_velocity: list[float] = _velocity("Velocity of approach")
     tangential_velocity: list[float] = _velocity("Tangential velocity before the impact")
-    normal_rebound_velocity: list[float] = _velocity("Velocity of separation, elastic")
-    tangential_rebound_velocity: list[float] = _velocity("Tangential velocity after the impact")
+    normal_rebound_velocity: list[float] = _velocity(
+        "Velocity of separation; the motion is elastic"
+    )
+    tangential_rebound_velocity: list[float] = _velocity(
+        "Tangential velocity after the impact, of the contact point"
+    )
     duration: list[float] = quantity("time", "Duration of contact")
     maximum_indentation_depth: list[float] = _length("Largest indentation depth")
     maximum_normal_force: list[float] = _force("Largest normal force")
@@ -257,9 +261,7 @@ class OverRadius(Answer):
     """Radii and pressures of a response that has fields only if they are requested."""
 
     radius: list[float] = _length("Radius r, requested or chosen", default=None)
-    pressure: _Field = _pressure(
-        f"Pressure p(r), by load or number of cycles and radius; {_NULL}", default=None
-    )
+    pressure: _Field = _pressure(f"Pressure p(r), by load and radius; {_NULL}", default=None)
 
 
 class TorsionAnswer(SlipAnswer, OverRadius):
@@ -382,6 +384,9 @@ class WearAnswer(SolvedAnswer, OverRadius):
     worn_depth: _Field = _length(
         f"Worn depth, f(r) − f₀(r), by load and radius; {_UNBOUNDED}", default=None
     )
+    pressure: _Field = _pressure(
+        f"Pressure p(r) in the limiting state, by load and radius; {_NULL}, at c", default=None
+    )
 
 
 class EvolutionAnswer(SolvedAnswer, OverRadius):
@@ -414,6 +419,9 @@ class EvolutionAnswer(SolvedAnswer, OverRadius):
     )
     worn_depth: list[list[float]] = _length(
         "Worn depth, f(r) − f₀(r), by number of cycles and radius", default=None
+    )
+    pressure: _Field = _pressure(
+        f"Pressure p(r), by number of cycles and radius; {_NULL}", default=None
     )
 
 

@@ -70,7 +70,7 @@ class TangentialAmplitude(Choice):
         "length", "Amplitude of the tangential displacement u_x", default=None
     )
     tangential_force: float = positive(
-        "force", "Amplitude of the tangential force F_x", default=None
+        "force", "Amplitude of the tangential force F_x, at most µ F_N", default=None
     )
 
 
