@@ -97,7 +97,7 @@ class LoadPointResults(Results):
     @property
     def indentation_depth(self) -> Any:
         """d [length]; negative in separation."""
-        return self._of_contacts(self.polyline.load_points[0])
+        return self._of_contacts(self.polyline.load_points[0].copy())
 
     @property
     def tangential_displacement(self) -> Any:
