@@ -99,7 +99,7 @@ UNLOADED: Final = SavedState("", 0.0, 0.0, 0.0, "no_contact", ())
 class SampledPath:
     """Points and samples of a load history, in the quantities that are prescribed.
 
-    Rows of two are those of the normal and of the tangential load.
+    Of two rows the first is the normal load, and the second the tangential load.
     """
 
     start: ContactState
