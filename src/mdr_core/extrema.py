@@ -23,7 +23,7 @@ _Field = Callable[[Indices, Array], Array]
 
 # Number of brackets between two singular radii, at both of which they cluster. The pressure under
 # the power r^100 has the narrowest smooth peak, next to the contact edge.
-_INTERVALS: Final = 8
+_BRACKETS: Final = 8
 # Relative variation of the stress in the last bracket.
 _LEAST_STEP: Final = 1e-13
 # Relative step of the derivative of a searched maximum, whose own error is about 1e-13.
@@ -122,7 +122,7 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
         reason = "infinite under any load, or not determined by the points of a table"
         raise InputError(path, f"is {reason}: give another load, or a profile that is smooth")
     end = np.minimum(infinite, profile.domain)
-    # A profile without an end is searched from its own scale; any contact stands for its last one.
+    # The search of a profile without an end begins at its own scale; `last` is then any contact.
     anywhere = 2 * profile.first_radius + 1.0
     last = profile.coordinate_from_radius(where(end < inf, end * (1 - ADJACENT), anywhere))
     middle = last / 2
@@ -142,8 +142,8 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
 def largest_with(profile: Profile, edge: Array, loaded: Flags, added: _Field) -> Array:
     """Return the largest sum of the stress and of another field, each of a contact [1].
 
-    Where the stress is known to fall from the axis, the other field falls as well. Within a flat
-    the sum is largest on the axis or at the edge of the flat.
+    The other field must fall from the axis wherever the stress is known to. Within a flat it must
+    make the sum largest on the axis or at the edge of the flat.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ def _search(profile: Profile, edge: Array, *slip: Array, added: _Field | None = 
 
     best = np.full(edge.size, -inf)
     fixed = np.append(0.0, profile.coordinate_breaks)
-    count = max(_INTERVALS // max(fixed.size - 1, 1), 1)
+    count = max(_BRACKETS // max(fixed.size - 1, 1), 1)
     for block in in_blocks(edge.size, fixed.size * count * _NINE.size):
         load = np.arange(edge.size)[block]
         same = np.broadcast_to(fixed, (load.size, fixed.size))

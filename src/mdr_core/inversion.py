@@ -83,7 +83,7 @@ def invert(function: Sloped, target: Array, start: Array, low: Array, high: Arra
             ) | last
             moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))
             moved = where(moved < LARGEST, where(moved > 1 / LARGEST, moved, 0.0), inf)
-            # Without a value neither bound moves, nor does the middle between them.
+            # If the function has no value here, neither bound moves, and the next middle is here.
             if count >= _ALONE and every(done | (np.isnan(residual) & (moved == s))):
                 break
             # A converged root does not change any more, so that it does not depend on the other

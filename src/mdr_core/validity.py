@@ -428,17 +428,17 @@ def infinite_pressure(
     counts : True in the cases in which a radius counts, all by default.
     instead : see `Notice`.
     """
-    where, radii = contact.contact_radius < 0, []
+    infinite, radii = contact.contact_radius < 0, []
     for b in contact.profile.infinite_pressure_radii:
         here = contact.loaded & (b <= contact.contact_radius) & counts(b)
-        where = where | here
+        infinite = infinite | here
         if some(here):
             radii.append(extremes(b)[0])
 
     def message() -> str:
         return text.format(listed([f"{b:.12g}" for b in radii]))
 
-    return Finding(code, where, message, instead=instead)
+    return Finding(code, infinite, message, instead=instead)
 
 
 def infinite_deviator(

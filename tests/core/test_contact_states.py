@@ -151,6 +151,18 @@ def test_values_of_each_contact_are_checked(given: tuple, message: str) -> None:
         history.unloaded_many(Paraboloid(given[0]), *given[1:])
 
 
+def test_depths_may_be_changed_in_place_for_the_next_step() -> None:
+    """The state keeps its own depth, and F_N = (4/3) E* sqrt(R) d^(3/2) follows the next one."""
+    states = history.unloaded_many(Paraboloid([1.0, 4.0]), 1.0, 1.0, 0.5)
+    for total in (0.25, 0.5):
+        depth = states.indentation_depth
+        depth += 0.25
+        assert states.indentation_depth == pytest.approx(total - 0.25, rel=0, abs=0)
+        states = history.advance_many(states, depth, 0.0)
+        force = 4 / 3 * np.array([1.0, 2.0]) * total**1.5
+        assert states.normal_force == pytest.approx(force, rel=1e-14, abs=0)
+
+
 def test_readable_form_has_one_line_for_each_result() -> None:
     lines = repr(stepped()).splitlines()
     assert lines[0] == "ContactStates:"

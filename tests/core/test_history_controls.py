@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from mdr_core import history, normal
 from mdr_core.controls import default_samples
 from mdr_core.errors import InputError
-from mdr_core.profiles import FlatPunch, Paraboloid, Tabulated
+from mdr_core.profiles import FlatPunch, Paraboloid, Sphere, Tabulated
 from tests.core.comparison import EPS, profile_from
 from tests.core.test_history_paths import MATERIAL, PROFILES, every_profile
 from tests.core.test_laws import cases
@@ -196,6 +196,21 @@ def test_force_at_a_gap_is_refused(
     with pytest.raises(InputError, match="add a point in contact without the force") as error:
         solve(profile, indentation_depth=depth, tangential_force=force, samples_per_step=samples)
     assert error.value.path == ("history", "tangential", "tangential_force", at)
+
+
+@every_number
+@every_pair
+@pytest.mark.parametrize(("points", "at"), [([2e3, 1e3], 0), ([1e-3, 2e3], 1)])
+def test_load_beyond_the_profile_is_refused_at_its_point(
+    points: list[float], at: int, controls: tuple[str, str], samples: int
+) -> None:
+    """A sphere of radius 1 has no contact beyond its equator."""
+    pressed, pushed = controls
+    scale = 1.0 if pressed == "indentation_depth" else E
+    loads = {pressed: np.multiply(points, scale), pushed: np.zeros(2)}
+    with pytest.raises(InputError, match="would extend beyond radius") as error:
+        solve(Sphere(1.0), **loads, samples_per_step=samples)
+    assert error.value.path == ("history", "normal", pressed, at)
 
 
 @every_number

@@ -267,6 +267,22 @@ def test_onset_is_that_of_any_load_in_its_ratio(profile: Profile) -> None:
         assert forces == pytest.approx(np.full(3, forces[0]), rel=1e-4, abs=0)
 
 
+@pytest.mark.parametrize("unit", [1e-30, 1.0, 1e30])
+def test_onset_of_a_load_at_the_onset_is_that_load(unit: float) -> None:
+    """The first step is then shorter than the rounding error of the logarithm of a large load.
+
+    p_max = (6 F E*^2/(pi^3 R^2))^(1/3) gives F = (pi p_max)^3 R^2/(6 E*^2), with 1.613 Y from
+    `test_hertz`.
+    """
+    modulus, strength = 1e5 * unit, 300.0 * unit
+    force = (np.pi * 1.613 * strength) ** 3 * 100.0 / (6 * modulus**2)
+    for _ in range(3):
+        contact = normal.solve(Paraboloid(10.0), modulus, normal_force=force)
+        onset = float(yield_onset_force(contact, strength, poissons_ratio=0.3))
+        assert onset == pytest.approx(force, rel=2e-3, abs=0)
+        force = onset
+
+
 @pytest.mark.every(3)
 @pytest.mark.parametrize("measure", MEASURES)
 @pytest.mark.parametrize(

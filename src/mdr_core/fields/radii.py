@@ -38,8 +38,8 @@ class Edges(NamedTuple):
     error: Array
     """Rounding errors of the radii [length]."""
     scale: Array
-    """Distance over which a stress changes next to the edge [length]; infinite where the stress is
-    that of adhesion, 1/sqrt(distance)."""
+    """Distance over which a stress changes next to the edge [length]; infinite for the
+    stress of adhesion, which is 1/sqrt(distance)."""
     reach: Array
     """Distance over which a displacement changes next to the edge [length]."""
 

@@ -123,7 +123,7 @@ def by_load(profile: Profile, shape: tuple[int, ...], *columns: Any) -> list[lis
 def tractions(contact: Loaded) -> tuple[tuple[int, ...], Callable[[int], Traction]]:
     """Return the shape of the loads, and the traction under the load of an index.
 
-    Without friction it is the traction of full slip for mu = 1, the normal one.
+    Without friction the traction is the pressure, as in full slip for mu = 1.
     """
     if isinstance(contact, ContactState):
         at_end = _at_end(contact)

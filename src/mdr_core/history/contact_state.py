@@ -56,7 +56,7 @@ class LoadPointResults(Results):
     polyline: Polylines
     """Slip memory of each contact, over depths."""
     before: Polylines
-    """Slip memory before the step that led here; the same one in other states."""
+    """Slip memory before the step that led here; without such a step the same as `polyline`."""
     quantities: ClassVar[tuple[str, ...]] = (
         "indentation_depth",
         "normal_force",
@@ -69,7 +69,7 @@ class LoadPointResults(Results):
     )
 
     def _of_contacts(self, values: NDArray[Any]) -> Any:
-        """Return the values of all contacts; those of a single state are numbers."""
+        """Return the values of all contacts; a single state returns its number."""
         return values
 
     @cached_property
@@ -97,7 +97,7 @@ class LoadPointResults(Results):
     @property
     def indentation_depth(self) -> Any:
         """d [length]; negative in separation."""
-        return self._of_contacts(self.polyline.load_points[0])
+        return self._of_contacts(self.polyline.load_points[0].copy())
 
     @property
     def tangential_displacement(self) -> Any:
@@ -162,7 +162,7 @@ class ContactState(LoadPointResults):
     quantities: ClassVar[tuple[str, ...]] = (*LoadPointResults.quantities, "slip_fronts")
 
     def _of_contacts(self, values: NDArray[Any]) -> Any:
-        """Return the only one of the values."""
+        """Return the number of this contact."""
         return values[0]
 
     @property

@@ -99,7 +99,7 @@ UNLOADED: Final = SavedState("", 0.0, 0.0, 0.0, "no_contact", ())
 class SampledPath:
     """Points and samples of a load history, in the quantities that are prescribed.
 
-    Rows of two are those of the normal and of the tangential load.
+    Of two rows the first is the normal load, and the second the tangential load.
     """
 
     start: ContactState
@@ -114,8 +114,8 @@ class SampledPath:
     """State at the start."""
 
     @cached_property
-    def loads(self) -> Array:
-        """Loads at the start and at each sample, shape (2, n + 1)."""
+    def even_samples(self) -> Array:
+        """Loads at the start and at samples that divide each step evenly, shape (2, n + 1)."""
         count, start, stop = self.per_step, self.points[:, :-1, None], self.points[:, 1:, None]
         if count == 1:
             return self.points
@@ -123,10 +123,20 @@ class SampledPath:
         # Proportional forces stay proportional to rounding error, even where they approach zero.
         samples = start * ((count - share) / count) + stop * (share / count)
         samples = np.where(start == stop, stop, samples).reshape(2, -1)
-        if self.starts_straight and samples[0, count - 1] > 0:
-            normal = self._normal_coordinate(samples[0, :count])
-            samples[1, :count] = samples[1, count - 1] * (normal / normal[-1])
         return np.hstack([self.points[:, :1], samples])
+
+    @cached_property
+    def loads(self) -> Array:
+        """Loads at the start and at each sample, shape (2, n + 1); the normal loads are even.
+
+        Raises InputError at `load` for a normal load that has no contact.
+        """
+        loads, count = self.even_samples, self.per_step
+        if self.starts_straight and loads[0, count] > 0:
+            normal = self._normal_coordinate(loads[0, 1 : count + 1])
+            loads = loads.copy()
+            loads[1, 1 : count + 1] = loads[1, count] * (normal / normal[-1])
+        return loads
 
     @cached_property
     def step(self) -> Indices:

@@ -336,7 +336,7 @@ def _require_solvable(path: SampledPath) -> None:
 
     It suffices that the largest load and the smallest load above zero have a solution.
     """
-    loads, name = np.maximum(path.loads[0], 0.0), path.controls[0]
+    loads, name = np.maximum(path.even_samples[0], 0.0), path.controls[0]
     ends = np.array([loads.argmax(), np.where(loads > 0, loads, np.inf).argmin()])
     try:
         normal.solve(path.start.profile, path.start.e_star, **{name: loads[ends]})

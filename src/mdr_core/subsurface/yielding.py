@@ -249,7 +249,8 @@ def _onset(
         low, high = (low, load) if found > 0 else (load, high)
         slope = (found - excess) / (load - before) if load != before else slope
         step, last = -found / max(slope, 1 / _REACH), load - before
-        if step == 0 or (excess and abs(step * last) <= _RTOL):
+        # A step below the rounding error of the load leaves no bracket to halve.
+        if load + step == load or (excess and abs(step * last) <= _RTOL):
             return exp(min(max(load + step, lowest), highest))
         before, excess, load = load, found, min(max(load + step, lowest), highest)
         if not low < load < high:
