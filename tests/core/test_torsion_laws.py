@@ -280,7 +280,11 @@ PUNCH = normal.solve(FlatPunch(1.0), E_STAR, normal_force=1.0)
             "double precision",
         ),
         (lambda: twist(BALL, rotation=[0.1, np.inf]), ("torsion", "rotation", 1), "finite"),
-        (lambda: twist(BALL, rotation=[0.1, 0.2, 0.3]), ("torsion", "rotation"), "shape"),
+        (
+            lambda: twist(BALL, rotation=[0.1, 0.2, 0.3]),
+            ("torsion", "rotation"),
+            "give one, or as many",
+        ),
         (lambda: twist(BALL), ("torsion",), "exactly one"),
         (lambda: twist(BALL, torque=0.1, rotation=0.1), ("torsion",), "exactly one"),
         (
