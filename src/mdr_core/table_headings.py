@@ -87,6 +87,13 @@ def titles_of(
     """Return the titles of the columns: the last line of names, and the units beneath or beside.
 
     Data of the measurement, such as `Length; 0,8 mm`, name no column; the last line does.
+
+    Parameters
+    ----------
+    heading : number and text of each line above the numbers.
+    separator : separator of the cells, a blank for blanks of any number.
+    count : number of columns.
+    kind : names of the two quantities that are read, such as `PROFILE`.
     """
     titles, common = [Title()] * count, None
     for number, text in heading:
@@ -159,7 +166,19 @@ def _rank(title: Title, quantity: str) -> int | None:
 def places_of(
     titles: Sequence[Title], numeric: Sequence[int], kind: Sequence[str], line: int
 ) -> list[int]:
-    """Return the indices of the two columns, or an InputError that asks for their names."""
+    """Return the indices of the two columns.
+
+    Parameters
+    ----------
+    titles : titles of all columns.
+    numeric : indices of the columns of numbers.
+    kind : names of the two quantities that are read, such as `PROFILE`.
+    line : number of the first line of numbers, to which an error points.
+
+    Raises
+    ------
+    ColumnsError : columns that the titles do not tell apart; it asks for their names.
+    """
     if len(numeric) == 2 and kind == PROFILE and not any(titles[i].name for i in numeric):
         return list(numeric)
     places, names = [], {i + 1: titles[i].name for i in numeric}
