@@ -128,6 +128,11 @@ class ContactResults(Results):
         """Warnings; where the bodies are unknown, for Poisson's ratio 0.3 on a rigid body."""
         return (*notices(findings(self.solved)), *self.warnings_without_bodies)
 
+    @property
+    def warnings_without_bodies(self: Any) -> tuple[Notice, ...]:
+        """Warnings that do not depend on the bodies."""
+        return tuple(notices([*self.normal.findings, inaccurate(self.error_estimate)]))
+
     @cached_property
     def model_error(self: SolvedContact) -> Array:
         """Estimated relative error of the model in each case [1]; see `validity.model_error`."""
@@ -153,11 +158,6 @@ class ResultsOverLoads(ContactResults):
     def error_estimate(self: Any) -> float:
         """Largest of `error_estimates` [1]."""
         return extremes(self.error_estimates)[1]
-
-    @property
-    def warnings_without_bodies(self: Any) -> tuple[Notice, ...]:
-        """Warnings that do not depend on the bodies."""
-        return tuple(notices([*self.normal.findings, inaccurate(self.error_estimate)]))
 
 
 def _under_a_force(contact: LoadedContact, error: Array | None) -> Array | None:

@@ -320,8 +320,7 @@ class LimitingWear(validity.ContactResults):
         }
         codes = [code for code, flags in raised.items() if some(flags)]
         own = [Notice(code, _WARNINGS[code], instead=_INSTEAD.get(code)) for code in codes]
-        found = [*self.normal.findings, validity.inaccurate(self.error_estimate)]
-        return (*validity.notices(found), *own)
+        return (*super().warnings_without_bodies, *own)
 
 
 def solve(
