@@ -14,7 +14,6 @@ from mdr_core.elementwise import every, full, in_blocks, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.inversion import MAX_STEPS, invert
 from mdr_core.profiles import Paraboloid, Power, Profile, RoundedPunch, Tabulated
-from mdr_core.profiles.powers import PowerLaw
 from mdr_core.typing import Array, Flags, Indices
 from mdr_core.validation import extremes, first_index, require_inside, require_not_negative
 
@@ -125,9 +124,7 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
     # The search of a profile without an end begins at its own scale; `last` is then any contact.
     anywhere = 2 * profile.first_radius + 1.0
     last = profile.coordinate_from_radius(where(end < inf, end * (1 - ADJACENT), anywhere))
-    middle = last / 2
-    if not some(end < inf):
-        middle = number(1.0) * (1.0 if isinstance(profile, PowerLaw) else profile.scale)
+    middle = last / 2 if some(end < inf) else number(1.0) * profile.scale
     beyond = (end < inf) & (target > largest_stress(profile, last, last > 0))
     require_inside(path, beyond & (end == profile.domain), profile)
     if some(beyond):

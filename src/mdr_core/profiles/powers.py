@@ -26,6 +26,11 @@ class PowerLaw(Profile):
     exponent: Parameter
 
     @property
+    def scale(self) -> Parameter:
+        # Contacts of all radii are similar: any one serves.
+        return 1.0
+
+    @property
     def stick_exponents(self) -> tuple[Parameter, Parameter]:
         """Source: mdr-5, Eqs. (5.12), (5.16), (5.29), (5.31)."""
         return self.exponent, self.exponent + 1
