@@ -199,9 +199,9 @@ def _touching(curve: Model) -> tuple[Model, Parameters]:
         pull_off = _states(curve, found).least["indentation_depth"]
         ends = [found["contact_point"] + _AFTER * pull_off]
         # Noise that hides the pull-off leaves the contact point open, unless adhesion is left out.
-        whole = _without_adhesion(curve)
+        without = _without_adhesion(curve)
         with suppress(InputError):
-            ends.append(_least_stable(whole, whole.best()))
+            ends.append(_least_stable(without, without.best()))
         for after in np.searchsorted(depth, ends).tolist():
             if model.touches.all() and after >= _DETACHED:
                 model, found = extended(model, found, after, max(after, least))
