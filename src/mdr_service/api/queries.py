@@ -27,22 +27,19 @@ A range `..._from`, `..._to` and `n` stands for a list of `n` numbers."""
 # These functions declare endpoints for OpenAPI; `handler` handles the requests.
 
 
-def _post(name: str, path: str, model: Any, text: str, **described: Any) -> QueryRoute:
+def _post(name: str, path: str, model: Any, **described: Any) -> QueryRoute:
     content = Body(openapi_examples=EXAMPLES[name])
 
     async def endpoint(
         query: Annotated[model, content], form: Annotated[ResponseParameters, Query()]
     ) -> None: ...
 
-    summary, _, description = text.partition("\n\n")
     return QueryRoute(
         handler(name, model),
         path,
         endpoint,
         methods=["POST"],
         operation_id=name,
-        summary=summary.removesuffix("."),
-        description=description,
         **described,
     )
 
@@ -56,7 +53,7 @@ def _get(name: str, kind: QueryType, model: Any) -> QueryRoute:
         get,
         methods=["GET"],
         operation_id=f"get_{name}",
-        summary=f"`{name}` by parameters, for spreadsheets and browsers",
+        summary=f"{kind.request.by_parameters} by parameters, for spreadsheets and browsers",
         description=_GET,
         **_documented(kind, GET_FAILURES),
     )
@@ -67,7 +64,13 @@ def _documented(kind: QueryType, failures: dict[int | str, dict[str, Any]]) -> d
     return {"tags": [tag], "response_model": kind.response, "responses": failures | RESULT}
 
 
-_of_batch: Final = {"tags": ["batch"], "response_model": BatchAnswer, "responses": POST_FAILURES}
+_of_batch: Final[dict[str, Any]] = {
+    "tags": ["batch"],
+    "summary": "Queries of any kind, each with its own answer or problem",
+    "description": _BATCH,
+    "response_model": BatchAnswer,
+    "responses": POST_FAILURES,
+}
 router: Final = APIRouter(
     routes=[
         *(
@@ -75,12 +78,13 @@ router: Final = APIRouter(
                 name,
                 kind.path,
                 kind.request,
-                getdoc(kind.solve) or "",
+                summary=kind.summary,
+                description=getdoc(kind.solve),
                 **_documented(kind, POST_FAILURES),
             )
             for name, kind in QUERIES.items()
         ),
-        _post("batch", "/v1/batch", BatchQuery, _BATCH, **_of_batch),
+        _post("batch", "/v1/batch", BatchQuery, **_of_batch),
         *(_get(name, QUERIES[name], model) for name, model in PARAMETERS.items()),
     ]
 )

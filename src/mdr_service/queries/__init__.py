@@ -47,37 +47,104 @@ class QueryType(NamedTuple):
     """A query: its endpoint, its models, and the functions that compute its result."""
 
     path: str
+    summary: str
+    """Title of the endpoint `POST`."""
     request: type[Query]
     response: type[SolvedAnswer]
     solve: Callable[[Any], Any]
-    """Function whose docstring is the summary and the description of the endpoint in OpenAPI."""
+    """Function whose docstring is the description of the endpoint in OpenAPI."""
     result: Callable[[Any, Any], dict[str, Any]]
     """Function of the request and its solution; the members in their order, lists as arrays."""
 
 
 QUERIES: Final[Mapping[str, QueryType]] = {
-    "normal": QueryType("/v1/normal", NormalQuery, NormalAnswer, solve_normal, contact_result),
-    "fit": QueryType("/v1/normal/fit", FitQuery, FitAnswer, solve_fit, plain_result),
+    "normal": QueryType(
+        "/v1/normal",
+        "Normal contact under a depth, a force or a contact radius",
+        NormalQuery,
+        NormalAnswer,
+        solve_normal,
+        contact_result,
+    ),
+    "fit": QueryType(
+        "/v1/normal/fit",
+        "Modulus, contact point, offset and adhesion from a measured curve of force over depth",
+        FitQuery,
+        FitAnswer,
+        solve_fit,
+        plain_result,
+    ),
     "tangential": QueryType(
-        "/v1/tangential", TangentialQuery, TangentialAnswer, solve_tangential, contact_result
+        "/v1/tangential",
+        "Partial slip under a tangential force or displacement, or a stick radius",
+        TangentialQuery,
+        TangentialAnswer,
+        solve_tangential,
+        contact_result,
     ),
     "history": QueryType(
-        "/v1/tangential/history", HistoryQuery, HistoryAnswer, solve_history, history_result
+        "/v1/tangential/history",
+        "Load history: an arbitrary load path or identical cycles",
+        HistoryQuery,
+        HistoryAnswer,
+        solve_history,
+        history_result,
     ),
     "tangential_fit": QueryType(
-        "/v1/tangential/fit", LoopQuery, LoopAnswer, solve_loop, plain_result
+        "/v1/tangential/fit",
+        "Shear modulus, friction and compliance of the rig from a measured loop",
+        LoopQuery,
+        LoopAnswer,
+        solve_loop,
+        plain_result,
     ),
     "impact": QueryType(
-        "/v1/tangential/impact", ImpactQuery, ImpactAnswer, solve_impact, plain_result
+        "/v1/tangential/impact",
+        "Oblique impact: rebound, duration and loss of energy by friction",
+        ImpactQuery,
+        ImpactAnswer,
+        solve_impact,
+        plain_result,
     ),
-    "torsion": QueryType("/v1/torsion", TorsionQuery, TorsionAnswer, solve_torsion, torsion_result),
-    "stress": QueryType("/v1/stress", StressQuery, StressAnswer, solve_stress, stress_result),
+    "torsion": QueryType(
+        "/v1/torsion",
+        "Twist about the axis: torque, rotation and slip",
+        TorsionQuery,
+        TorsionAnswer,
+        solve_torsion,
+        torsion_result,
+    ),
+    "stress": QueryType(
+        "/v1/stress",
+        "Surface stresses, slip and displacement over the radius",
+        StressQuery,
+        StressAnswer,
+        solve_stress,
+        stress_result,
+    ),
     "subsurface": QueryType(
-        "/v1/subsurface", SubsurfaceQuery, SubsurfaceAnswer, solve_subsurface, subsurface_result
+        "/v1/subsurface",
+        "Stresses beneath the surface of either body, their peaks and the onset of yield",
+        SubsurfaceQuery,
+        SubsurfaceAnswer,
+        solve_subsurface,
+        subsurface_result,
     ),
-    "wear": QueryType("/v1/wear", WearQuery, WearAnswer, solve_wear, wear_result),
+    "wear": QueryType(
+        "/v1/wear",
+        "Limiting state of fretting wear under a small oscillation",
+        WearQuery,
+        WearAnswer,
+        solve_wear,
+        wear_result,
+    ),
     "evolution": QueryType(
-        "/v1/wear/evolution", EvolutionQuery, EvolutionAnswer, solve_evolution, evolution_result
+        "/v1/wear/evolution",
+        "Fretting wear over the cycles: profile and pressure up to the limiting state",
+        EvolutionQuery,
+        EvolutionAnswer,
+        solve_evolution,
+        evolution_result,
     ),
 }
 """The queries by their names in a batch, on the command line and as operations of OpenAPI."""

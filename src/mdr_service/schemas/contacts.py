@@ -291,8 +291,8 @@ class Query(Strict):
     """Axes of a picture, unless the result has radii."""
     refused: ClassVar[dict[str, str]] = {}
     """Members of other queries that this one cannot have, with the reason."""
-    by_parameters: ClassVar[bool] = False
-    """True if a request can consist of numbers, and thus of parameters of a URL."""
+    by_parameters: ClassVar[str] = ""
+    """Title of the endpoint `GET`; empty where a request does not consist of numbers."""
     is_long: ClassVar[bool] = False
     """True if every query runs in a compute process."""
 
@@ -324,7 +324,7 @@ class Query(Strict):
 class NormalQuery(Query):
     """Profile pressed into an elastic half-space without friction."""
 
-    by_parameters = True
+    by_parameters = "Normal contact"
 
     holds_within: float = HOLDS_WITHIN
     load: Load
@@ -339,6 +339,7 @@ class TangentialQuery(NormalQuery):
     """Contact with friction, loaded normally first and then tangentially."""
 
     axes = Axes("tangential_displacement", ("tangential_force",), curves="normal_force")
+    by_parameters = "Partial slip"
 
     friction_coefficient: float = friction()
     tangential: Tangential

@@ -102,7 +102,7 @@ _STRESS: Final[dict[str, Any]] = {
 class StressQuery(LoadedQuery, FieldQuery, json_schema_extra=_STRESS):
     """Fields of a contact over the radius, with or without friction."""
 
-    by_parameters = True
+    by_parameters = "Fields over the radius"
 
     holds_within: float = HOLDS_WITHIN
     quantities: Annotated[list[FieldName], OnceEach] = quantities(

@@ -169,7 +169,7 @@ class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles
     """Contact with friction on a load path."""
 
     axes = Axes("tangential_displacement", ("tangential_force",), in_order=True)
-    by_parameters = True
+    by_parameters = "Cycles of the tangential load"
 
     friction_coefficient: float = friction()
     history: History = left_out("Arbitrary load path, given by its points.")

@@ -16,7 +16,7 @@ class TorsionQuery(FieldQuery):
     refused = dict.fromkeys(
         ("tangential", "history", "cycles", "oscillation"), f"a twist needs {NEEDED}"
     )
-    by_parameters = True
+    by_parameters = "Twist about the axis"
     is_long = True
 
     load: Load

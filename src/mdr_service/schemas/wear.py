@@ -45,7 +45,7 @@ class WearQuery(_FrettingQuery):
     """Limiting state of a contact that wears under a tangential oscillation."""
 
     axes = Axes("stick_radius", ("worn_volume", "wear_radius"))
-    by_parameters = True
+    by_parameters = "Limiting state of fretting wear"
 
     load: ConstantNormalLoads
     oscillation: Oscillation
