@@ -85,9 +85,12 @@ def of_json(message: str) -> str:
         "key must be": "put names in double quotes",
         "EOF": "it is empty or cut off",
         "expected value at line 1 column 1": _PLAIN,
+        "expected value": "write numbers as 0.5 or 1.1e11, and texts in double quotes",
         "invalid unicode": _PLAIN,
     }
-    remedy = next((f"; {text}" for start, text in remedies.items() if reason.startswith(start)), "")
+    # Column 1 is not the start of column 118.
+    found = (text for start, text in remedies.items() if f"{reason} ".startswith(f"{start} "))
+    remedy = next((f"; {text}" for text in found), "")
     return f"not valid JSON: {reason}{remedy}"
 
 

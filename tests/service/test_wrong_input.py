@@ -164,6 +164,7 @@ NOT_JSON = {
     "a trailing comma": b'{"load": {},}',
     "a byte order mark": "\ufeff{}".encode(),
     "a dictionary of Python": b"{'load': {}}",
+    "a number without its zero": query(load='{"normal_force": .5}'),
     "half": query()[:-1],
     "nested 100000 deep": b"[" * 100_000,
     "nested 100000 deep in a field": query(load="[" * 100_000 + "]" * 100_000),
@@ -177,6 +178,7 @@ REMEDIES = {
     "a trailing comma": ["trailing comma", "line 1"],
     "a byte order mark": ["UTF-8", "byte order mark"],
     "a dictionary of Python": ["double quotes"],
+    "a number without its zero": ["; write numbers as 0.5"],
 }
 
 
