@@ -111,7 +111,9 @@ class ContactResults(Results):
     @property
     def sources(self: SolvedContact) -> tuple[str, ...]:
         """Keys of the manual's list of sources, with equations, on which the results rest."""
-        return sources_of(type(self).__name__, self.solved.normal.profile.kind)
+        normal = self.solved.normal
+        layer = () if normal.material.layer is None else ("layer",)
+        return sources_of(type(self).__name__, *layer, normal.profile.kind)
 
     @property
     def slips_from(self) -> Parameter:

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from mdr_core import KINDS, fields, normal
+from mdr_core import KINDS, fields, layer, normal
 from mdr_core.errors import InputError
+from mdr_core.materials import Layer, Material
 from mdr_core.profiles import Paraboloid, Sphere, TwoSpheres, slope_of_half_angle
 from mdr_core.validity import sources_of
 from tests.core import random_cases
@@ -96,3 +97,8 @@ def test_sources_of_every_kind_and_result() -> None:
     assert all(sources_of(kind) for kind in KINDS)
     contact = normal.solve(Sphere(1.0), 1.0, normal_force=1e-3)
     assert contact.to_dict()["sources"] == (*sources_of("NormalContact"), *sources_of("sphere"))
+    gel = Material(1.0, layer=Layer(0.1, "frictionless"))
+    held = layer.solve(Sphere(1.0), gel, normal_force=1e-3, work_of_adhesion=1e-6)
+    names = ("AdhesiveContact", "layer", "sphere")
+    assert all(sources_of(name) for name in names)
+    assert held.sources == sources_of(*names)
