@@ -42,7 +42,7 @@ _REPLACED: Final = (
     ("\r\n?", "\n"),
     ("−", "-"),
     ("μ", "µ"),
-    ("\xa0", " "),
+    (r"[^\S\n\t]", " "),
     (r"(?m)^[^\S\n]*(#|%|!|//)+", "#"),
     (r"[^\S\n][#!].*", ""),
     (" {2,}", " "),
@@ -50,6 +50,8 @@ _REPLACED: Final = (
 # Any number, with whatever decimal sign.
 _NUMBERLIKE: Final = re.compile(r"(?ai)[-+]?[\d.,]*\d[.,]?([ed][-+]?\d+)?")
 _DECIMAL: Final = str.maketrans(",dD", ".ee")
+# Quoted number with commas before its thousands, beside which 3,000 in quotes is not 3.
+_THOUSANDS: Final = re.compile(r'" *[-+]?\d{1,3}(,\d{3})*,\d{3}(\.\d*|,\d{3}) *"')
 # Number of a line, and its cells.
 _Row = tuple[int, list[str]]
 # Bytes of the longest file, some 10^5 points: more take seconds.
@@ -211,6 +213,8 @@ def parse(content: bytes, kind: Sequence[str], columns: Sequence[int] | None = N
 
     `columns` are the numbers of the two columns, from 1, where headings do not tell them.
     """
+    if columns and columns[0] == columns[1]:
+        raise InputError(("columns",), "must be two different columns")
     lines = _lines(_decoded(content))
     last = next((text for _, comment, text in reversed(lines) if text and not comment), "")
     expected = f"no line holds two numbers, a {kind[0]} and a {kind[1]}"
@@ -241,6 +245,9 @@ def _lines(text: str) -> list[tuple[int, bool, str]]:
 
     for pattern, replaced in _REPLACED:
         text = re.sub(pattern, replaced, text)
+    if grouped := _THOUSANDS.search(text):
+        line = text.count("\n", 0, grouped.start()) + 1
+        raise refuse(line, "a comma stands before thousands: write numbers without it")
     lines = re.sub('"([^"\n]*)"', unquoted, text).split("\n")
     return [
         (number, line.startswith("#"), line.lstrip("#").strip(" ").rstrip(" \t;,"))

@@ -210,6 +210,8 @@ def test_curves_as_instruments_export_them(
         ("Depth * 10^6,Force [N]\n0.1,5\n0.2,6", "the unit or factor in"),
         ("Load rate,Depth,Time\n1.0,2.0,3.0", "name the depth d and the force F"),
         ("Depth [nm],Force [N]\n0.1,5\n0.2,1e999", "Line 3: a number is too large"),
+        ('Depth [nm],Force [N]\n"1,000.5",0\n"3,000",1', "Line 2: a comma stands before thousands"),
+        ('Depth [nm],Force [N]\n1,0\n"1,000,000",1', "Line 3: a comma stands before thousands"),
         ("PK\x03\x04", "is a workbook"),
     ],
 )
@@ -218,6 +220,13 @@ def test_what_is_not_understood_is_refused(tmp_path: Path, text: str, detail: st
     file.write_text(text, "utf-8")
     with pytest.raises(InputError, match=detail):
         read_curve(file, ("m", "N"))
+
+
+@pytest.mark.parametrize("blank", ["\x0b\x0c", "\x1c", "\u2009"])
+def test_line_of_any_blanks_is_blank(tmp_path: Path, blank: str) -> None:
+    file = tmp_path / "curve.csv"
+    file.write_text(f"{blank}\nd [m];F [N]\n0;0\n{blank}\n1;2\n", "utf-8")
+    assert read_curve(file).normal_force.tolist() == [0, 2]
 
 
 @pytest.mark.parametrize("line", [" " * 300_000, "\t" * 300_000, "[" * 300_000, "a " * 150_000])

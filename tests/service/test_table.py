@@ -41,7 +41,7 @@ def test_columns_that_are_left_open_are_listed_and_can_be_chosen(client: Client)
     status, document = read(client, text, "curve&columns=5,3")
     assert status == 200
     assert (document["indentation_depth"], document["normal_force"]) == ([4, 8], [2, 4])
-    for wrong in ("2,3", "5,9", "0,1", "1", "x"):
+    for wrong in ("2,3", "5,9", "3,3", "0,1", "1", "x"):
         status, document = read(client, text, f"curve&columns={wrong}")
         assert (status, document["type"]) == (422, "urn:mdr:problem:invalid-request")
         assert document["errors"][0]["pointer"].startswith("/columns") or wrong in {"2,3", "5,9"}
