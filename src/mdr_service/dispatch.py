@@ -101,7 +101,7 @@ def _parsed(entry: object) -> _Entry:
             return item.ask, QUERIES[item.ask].request.model_validate(item.request)
     except ValidationError as error:
         return problems.from_validation(error)
-    return problems.invalid([("", f"there is no such query; there are {', '.join(QUERIES)}")])
+    return problems.invalid([("/ask", f"there is no such query; there are {', '.join(QUERIES)}")])
 
 
 def _require_few_numbers(entries: list[_Entry]) -> None:

@@ -5,7 +5,7 @@ Python, and print the bound 1e50 with all its zeros.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Final, get_args
+from typing import Any, Final, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic_core import ErrorDetails
@@ -128,6 +128,9 @@ def _unknown(error: ErrorDetails, place: Path, model: _Model | None) -> str:
 
 def _missing(error: ErrorDetails, place: Path, model: _Model | None) -> str:
     described = _described(_models(error, place, model))
+    fields = [each.model_fields.get(_field(place)) for each in _models(error, place[:-1], model)]
+    if any(field and get_origin(field.annotation) is list for field in fields):
+        described = described.replace("an object", "a list of objects", 1)
     words = [part for part in _at(error, place, model) if isinstance(part, str)]
     listed = f", {described}" if described else f"; it can be {', '.join(words)}" if words else ""
     return f"is required{listed}"

@@ -254,6 +254,12 @@ def test_pointer_ends_before_a_name_longer_than_any_field() -> None:
     assert problems.pointer(["profile", f"{longest}x", "kind"]) == "/profile"
 
 
+def test_missing_list_is_described_as_a_list(client: Client) -> None:
+    response = client.post_text("/v1/normal", query('{"kind": "series"}'))
+    detail = "is required, a list of objects of coefficient, exponent"
+    assert response.json()["errors"] == [{"pointer": "/profile/terms", "detail": detail}]
+
+
 def test_number_of_errors_is_limited(client: Client) -> None:
     many = "".join(f', "{"unknown" * 8}{i}": 1' for i in range(10_000))
     response = client.post_text("/v1/normal", query(more=many))
