@@ -180,14 +180,22 @@ def require_finite(path: tuple[str | int, ...], values: Array) -> None:
     reject(path, values, ~np.isfinite(values), FINITE)
 
 
+def require_list(path: tuple[str | int, ...], values: Array) -> None:
+    """Raise InputError for values in rows and columns."""
+    if values.ndim != 1:
+        shape = " x ".join(map(str, values.shape)) or "one number"
+        raise InputError(path, f"must be a list of numbers, not {shape}")
+
+
 def as_curve(places: str, **given: ArrayLike) -> tuple[Array, Array]:
     """Return the two named lists of a measured curve as arrays of equal length.
 
-    Raises InputError for numbers that are not finite, and for lists of different lengths; `places`
-    is the word for the first list in the message.
+    Raises InputError for numbers that are not finite, for values in rows and columns, and for lists
+    of different lengths; `places` is the word for the first list in the message.
     """
     first, second = (np.atleast_1d(as_numbers((name,), given[name])) for name in given)
     for name, values in zip(given, (first, second), strict=True):
+        require_list((name,), values)
         require_finite((name,), values)
     if first.shape != second.shape:
         detail = f"has {second.size} values for {first.size} {places}"

@@ -189,6 +189,16 @@ IN_PYTHON: dict[str, tuple[Callable[[], Any], list[str]]] = {
         lambda: mdr.subsurface.yield_onset_force(PRESSED, 1e9, "mises", poissons_ratio=0.3),
         ["measure", "von_mises", "maximum_shear"],
     ),
+    "a curve as columns": (
+        lambda: mdr.fit.solve(
+            mdr.Paraboloid(1), indentation_depth=np.ones((3, 1)), normal_force=np.ones((3, 1))
+        ),
+        ["indentation_depth: must be a list of numbers", "3 x 1"],
+    ),
+    "a table as columns": (
+        lambda: mdr.Tabulated(np.ones((3, 1)), np.ones((3, 1))),
+        ["r: must be a list of numbers", "3 x 1"],
+    ),
     "pairs as terms": (
         lambda: mdr.Series([(1.0, 2.0)]),
         ["terms[0]", "PowerTerm(coefficient, exponent)"],

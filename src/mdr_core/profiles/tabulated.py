@@ -20,7 +20,7 @@ from mdr_core.profiles.table_fit import fit_table
 from mdr_core.profiles.truncated import RoundedPunch, Truncated, TruncatedCone
 from mdr_core.quadrature import NODES, composite_rule
 from mdr_core.typing import Array, Flags, Parameter
-from mdr_core.validation import as_numbers, require_finite, single
+from mdr_core.validation import as_numbers, require_finite, require_list, single
 
 # Bound on the error of the sums over the pieces: several times the largest in the tests.
 _ROUNDING: Final = 2e-13
@@ -356,10 +356,11 @@ def _of_each(function: Callable[..., Array], ends: tuple[Array, ...], radius: Ar
 
 def _checked(r: Array, f: Array) -> tuple[Array, Array]:
     """Return the points; InputError unless they are some, finite and not all alike."""
-    if r.ndim != 1 or f.shape != r.shape:
-        raise InputError(("profile", "f"), f"has {f.size} values for {r.size} radii")
     for name, values in (("r", r), ("f", f)):
+        require_list(("profile", name), values)
         require_finite(("profile", name), values)
+    if f.size != r.size:
+        raise InputError(("profile", "f"), f"has {f.size} values for {r.size} radii")
     if np.unique(r).size < 3:
         raise InputError(("profile", "r"), "give at least three points with different radii")
     if np.ptp(f) == 0:
