@@ -13,9 +13,16 @@ from mdr_core.doubles import ADJACENT
 from mdr_core.elementwise import every, full, in_blocks, number, some, where
 from mdr_core.errors import InputError
 from mdr_core.inversion import MAX_STEPS, invert
-from mdr_core.profiles import Paraboloid, Power, Profile, RoundedPunch, Tabulated
+from mdr_core.profiles import (
+    Paraboloid,
+    Power,
+    Profile,
+    RoundedPunch,
+    SphericalTipCone,
+    Tabulated,
+)
 from mdr_core.typing import Array, Flags, Indices
-from mdr_core.validation import extremes, first_index, require_inside, require_not_negative
+from mdr_core.validation import first_index, require_inside, require_not_negative
 
 # Stress at radii, given as contact coordinates, under the loads of these indices; all (m,).
 _Field = Callable[[Indices, Array], Array]
@@ -28,13 +35,16 @@ _LEAST_STEP: Final = 1e-13
 # Relative step of the derivative of a searched maximum, whose own error is about 1e-13.
 _DIFFERENCE: Final = 1e-5
 # Coordinate whose energy overflows on every profile without an end. The pressure under a blunt cone
-# grows with the logarithm of the radius, so that a search beyond it would find no end.
+# grows with the logarithm of the radius, so that a search would find no end.
 _FARTHEST: Final = 1e150
 LEAST_GAP: Final = 1e-13
 """1 - (r/a)^2 below which the infinite tension of adhesion is taken to be constant."""
 # Points across the bracket of a peak, in parts of it. Each interval of a table, whose interpolation
 # may have a peak in every one, is sampled as finely.
 _NINE: Final = np.linspace(0.0, 1.0, 9)
+# a/R beyond which the flank of a spherical-tip cone adds the same pressure everywhere on the tip,
+# up to a relative (R/a)^2.
+_FAR: Final = 1e8
 # All contacts of rounded punches are similar. One spline serves them up to this absolute value of
 # log(s/b); its number of places and its degree leave an error of 3e-15.
 _CURVED, _PLACES, _DEGREE = 14.0, 600, 7
@@ -93,6 +103,11 @@ def _of_similar(profile: Profile, edge: Array) -> Array:
             _, s = profile.flank(edge)
             height = _curve()(np.log(s / profile.flat_radius), extrapolate=False)[()]
             return height * profile.depth(edge) / s
+    if isinstance(profile, SphericalTipCone):
+        far = edge > _FAR * profile.tip_radius
+        if some(far):
+            excess = np.vectorize(_over_axis, otypes=[float])(profile.slope)
+            return where(far, profile.axis_stress(edge) + excess, nan)
     return full(nan, edge)
 
 
@@ -121,17 +136,24 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
         reason = "infinite under any load, or not determined by the points of a table"
         raise InputError(path, f"is {reason}: give another load, or a profile that is smooth")
     end = np.minimum(infinite, profile.domain)
-    # The search of a profile without an end begins at its own scale; `last` is then any contact.
-    anywhere = 2 * profile.first_radius + 1.0
-    last = profile.coordinate_from_radius(where(end < inf, end * (1 - ADJACENT), anywhere))
-    middle = last / 2 if some(end < inf) else number(1.0) * profile.scale
-    beyond = (end < inf) & (target > largest_stress(profile, last, last > 0))
-    require_inside(path, beyond & (end == profile.domain), profile)
+    farthest = where(end < inf, end * (1 - ADJACENT), _FARTHEST)
+    last = profile.coordinate_from_radius(farthest)
+    # The largest pressure is at least the mean pressure.
+    beyond = ~(target <= profile.reduced_force(last) / (np.pi * farthest * farthest))
     if some(beyond):
-        detail = f"no contact has it: at radius {extremes(infinite)[0]:.12g} it is infinite"
-        raise InputError((*path, *first_index(beyond)), detail, beyond)
-    largest = where(end < inf, last, _FARTHEST)
-    start, low, high = (full(each, target) for each in (middle, 0.0, largest))
+        largest = largest_stress(profile, last, last > 0)
+        beyond = target > largest
+        require_inside(path, beyond & (end < inf) & (end == profile.domain), profile)
+    if some(beyond):
+        index = first_index(beyond)
+        most, radius = (np.broadcast_to(each, beyond.shape)[index] for each in (largest, infinite))
+        cause = f"up to radius {_FARTHEST} it is at most {most:.3g} E*: check the units"
+        if radius < inf:
+            cause = f"at radius {radius:.12g} it is infinite"
+        raise InputError((*path, *index), f"no contact has it: {cause}", beyond)
+    # The search of a profile without an end begins at its own scale.
+    middle = where(end < inf, last / 2, profile.scale)
+    start, low, high = (full(each, target) for each in (middle, 0.0, last))
     sloped = partial(pressure_and_slope, profile)
     return invert(sloped, target, start, low, high)
 
@@ -180,6 +202,13 @@ def _over_slope(exponent: float) -> float:
     """Largest pressure under a power, over E* g'(a), for an exponent > 1."""
     unit = Power(1.0, exponent)
     return float(_search(unit, np.ones(1))[0] / unit.dg(np.ones(1))[0])
+
+
+@lru_cache(maxsize=1024)
+def _over_axis(slope: float) -> float:
+    """Largest pressure less the pressure on the axis, over E*, far beyond a spherical tip [1]."""
+    unit, edge = SphericalTipCone(slope, 1.0), np.array([_FAR])
+    return float(_search(unit, edge)[0] - unit.axis_stress(edge)[0])
 
 
 @cache

@@ -35,8 +35,9 @@ class Body:
     def __post_init__(self) -> None:
         if self.held not in get_args(Held):
             raise InputError(("held",), f"must be one of {', '.join(get_args(Held))}")
-        as_positive(("youngs_modulus",), self.youngs_modulus)
+        vars(self)["youngs_modulus"] = as_positive(("youngs_modulus",), self.youngs_modulus)
         require_poissons_ratio(("poissons_ratio",), self.poissons_ratio)
+        vars(self)["poissons_ratio"] = float(self.poissons_ratio)
 
     @property
     def shear_modulus(self) -> float:
@@ -61,7 +62,7 @@ class Layer:
         place = ("material", "layer")
         if self.base not in get_args(Base):
             raise InputError((*place, "base"), 'must be "bonded" or "frictionless"')
-        as_positive((*place, "thickness"), self.thickness)
+        vars(self)["thickness"] = as_positive((*place, "thickness"), self.thickness)
         if self.poissons_ratio is not None:
             require_poissons_ratio((*place, "poissons_ratio"), self.poissons_ratio)
 
@@ -95,7 +96,7 @@ class Material:
             raise InputError(("material", "layer"), detail)
         for name in ("e_star", "g_star", "body_thickness", "shear_modulus"):
             if (value := getattr(self, name)) is not None:
-                as_positive(("material", name), value)
+                vars(self)[name] = as_positive(("material", name), value)
 
 
 UNKNOWN: Final = Material(1.0)

@@ -141,12 +141,15 @@ def single(path: tuple[str | int, ...], value: ArrayLike) -> float:
 
 
 def as_positive(path: tuple[str | int, ...], value: Any) -> Any:
-    """Return positive and finite numbers, a list as an array, or raise InputError at the path."""
+    """Return positive and finite numbers, a list as an array, or raise InputError at the path.
+
+    NumPy's other numbers become doubles: products of them would overflow or have fewer digits.
+    """
     numbers = value if isinstance(value, float) else as_numbers(path, value)
     low, high = extremes(numbers)
     if not (low > 0 and high < inf):
         raise InputError(path, POSITIVE if low <= 0 else FINITE)
-    return numbers if isinstance(value, (list, tuple)) else value
+    return value if isinstance(value, float | int) else numbers
 
 
 def require_single_positive(path: tuple[str | int, ...], value: float) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mdr_core import history
-from mdr_core.profiles import Cone, Paraboloid, Tabulated
+from mdr_core.profiles import Cone, Paraboloid, PowerTerm, Series, Tabulated
 from tests.core.comparison import profile_from
 from tests.core.test_history_paths import (
     DEPTH,
@@ -101,6 +101,12 @@ def test_joined_contacts_are_those_of_the_parts() -> None:
     assert both.e_star == one.e_star
     assert both.tangential_force.tolist() == [states.tangential_force[1], 0.0]
     assert both.regime.tolist() == [states.regime[1], "no_contact"]
+
+
+def test_terms_in_a_list_are_those_in_a_tuple() -> None:
+    one, same = (Series(kind([PowerTerm(1.0, 2.0), PowerTerm(2, 4)])) for kind in (list, tuple))
+    assert one == same
+    assert len(history.join(*(history.unloaded(each, 1.0, 1.0, 0.5) for each in (one, same)))) == 2
 
 
 def test_profiles_of_two_kinds_are_not_joined() -> None:

@@ -98,6 +98,17 @@ def test_pressure_of_a_blunt_cone_grows_with_the_logarithm_of_the_radius() -> No
     assert found.contact_radius == pytest.approx(a, rel=1e-3, abs=0)
 
 
+@pytest.mark.parametrize("slope", [0.3, 2.0, 30.0])
+def test_cone_far_beyond_its_spherical_tip_adds_a_logarithm(slope: float) -> None:
+    """The largest pressure grows by E* (slope/2) ln(a_2/a_1), up to a relative b/a."""
+    radii = [1e7, 1e9, 1e30]
+    contact = normal.solve(SphericalTipCone(slope, 1.0), 1.0, contact_radius=radii)
+    expected = slope / 2 * np.diff(np.log(radii))
+    assert np.diff(contact.maximum_pressure) == pytest.approx(expected, rel=1e-6, abs=0)
+    back = normal.solve(contact.profile, 1.0, maximum_pressure=contact.maximum_pressure)
+    assert np.abs(back.contact_radius / radii - 1).max() <= back.error_estimate < 1e-10
+
+
 @pytest.mark.parametrize(
     ("profile", "pressure", "reason"),
     [
@@ -109,8 +120,11 @@ def test_pressure_of_a_blunt_cone_grows_with_the_logarithm_of_the_radius() -> No
         (CappedParaboloid(0.5, 3.0, 1.1), [0.01, 0.2], "at radius 0.5 it is infinite"),
         (TwoSpheres((1.0, -1.01)), 1.0, "60 degrees of the ball"),
         (Sphere(1.0), 1e9, "beyond radius"),
-        (RoundedCone(0.1, 1.0), 1e3, "leaves the range of double precision"),
-        (Hyperboloid(0.1, 1.0), 1e3, "leaves the range of double precision"),
+        # slope/2 ln(2e150/b) and a constant of the tip are the pressure at radius 1e150.
+        (RoundedCone(0.1, 1.0), 1e3, r"at most 17\.4 E\*: check the units"),
+        (Hyperboloid(0.1, 1.0), 1e3, r"at most 17\.4 E\*: check the units"),
+        (SphericalTipCone(2.0, 1.0), [10.0, 1e3], r"at most 347 E\*: check the units"),
+        (RoundedCone(0.1, 1.0), 15.0, "leaves the range of double precision"),
         (Paraboloid(1.0), -1.0, "must not be negative"),
         (Paraboloid(1.0), np.inf, "must be finite"),
     ],

@@ -54,6 +54,19 @@ def test_overflowing_outer_radius_is_rejected() -> None:
     assert caught.value.path == ("load", "normal_force", 0)
 
 
+@pytest.mark.parametrize("size", [1e-50, 1e-20, 1e50])
+def test_limit_under_a_needle_is_similar_at_every_size(size: float) -> None:
+    """Depths scale with a^0.05. The stick radius is 1e-140 a, the square of which may underflow."""
+    needle, limits = Power(1.0, 0.05), []
+    for a in (1.0, size):
+        depth = normal.solve(needle, 1.0, contact_radius=a).indentation_depth
+        contact = normal.solve(needle, 1.0, indentation_depth=depth)
+        slips = 0.5 * depth * (1 - 1e-7)
+        worn = limit.solve(contact, 1.0, 0.5, tangential_displacement=slips)
+        limits.append([worn.wear_radius / a, worn.worn_volume / (a * a * depth)])
+    assert limits[1] == pytest.approx(limits[0], rel=1e-11, abs=0)
+
+
 def kinked(corner: float = 1.0) -> Tabulated:
     """A paraboloid with a corner."""
     r = np.linspace(0.0, 3.0, 13)

@@ -124,9 +124,12 @@ def slope_integral(
         index = np.flatnonzero((end > start) | narrow)
         if index.size:
             start, end, far = start[index], end[index], r[index]
-            s_low, s_high, s_r = (
-                np.sqrt((x - branch.base) * (x + branch.base)) for x in (start, end, far)
-            )
+            s_low, s_high, s_r = places = start, end, far
+            # The square of a small radius underflows.
+            if branch.base:
+                s_low, s_high, s_r = (
+                    np.sqrt((x - branch.base) * (x + branch.base)) for x in places
+                )
             root_low, root_high = (np.sqrt((far - x) * (far + x)) for x in (start, end))
             if width is not None:
                 own = np.sqrt(width * (2 * low + width))[index]

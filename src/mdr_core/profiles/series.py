@@ -59,14 +59,18 @@ class Series(Profile):
         terms: Any = self.terms
         if not (isinstance(terms, tuple | list) and terms):
             raise InputError(path, "at least one term is needed, in a tuple of PowerTerm")
-        for i, term in enumerate(self.terms):
+        known = []
+        for i, term in enumerate(terms):
             if not isinstance(term, PowerTerm):
                 raise InputError((*path, i), "must be a PowerTerm(coefficient, exponent)")
             coefficient = single((*path, i, "coefficient"), term.coefficient)
             if not (isfinite(coefficient) and coefficient != 0):
                 raise InputError((*path, i, "coefficient"), "must be finite and not zero")
-            if not 0 < single((*path, i, "exponent"), term.exponent) < inf:
+            exponent = single((*path, i, "exponent"), term.exponent)
+            if not 0 < exponent < inf:
                 raise InputError((*path, i, "exponent"), "must be positive and finite")
+            known.append(PowerTerm(coefficient, exponent))
+        vars(self)["terms"] = tuple(known)
         if not self._powers:
             raise InputError(path, "the terms cancel to zero")
         if self._powers[0][0] < 0 or self.domain == 0:
