@@ -1,13 +1,25 @@
 """Several queries in one request, and their responses."""
 
+from collections.abc import Iterable
 from typing import Annotated, Any
 
-from pydantic import Field, WrapValidator
+from pydantic import BaseModel, Field, WithJsonSchema, WrapValidator
 
 from mdr_service.queries import QUERIES
 from mdr_service.schemas.answers import Answer, Problem
 from mdr_service.schemas.quantities import ABSENT, Strict
 from mdr_service.settings import SETTINGS
+
+
+def _any_of(models: Iterable[type[BaseModel]]) -> WithJsonSchema:
+    """Return the schema of an object of several models, each documented by its own endpoint."""
+    references = [{"$ref": f"#/components/schemas/{model.__name__}"} for model in models]
+    return WithJsonSchema({"anyOf": references})
+
+
+# A request is validated with the model of its query, apart from the others.
+_Request = Annotated[dict[str, Any], _any_of(kind.request for kind in QUERIES.values())]
+_Answer = Annotated[dict[str, Any], _any_of(kind.response for kind in QUERIES.values())]
 
 
 class BatchItem(Strict):
@@ -16,7 +28,7 @@ class BatchItem(Strict):
     ask: Annotated[str, Field(json_schema_extra={"enum": [*QUERIES]})]
     """Name of the query, as its path ends: `fit` is that of `/v1/normal/fit`, `tangential_fit` of
     `/v1/tangential/fit`."""
-    request: dict[str, Any]
+    request: _Request
     """Request of the query, as for its own endpoint: `NormalQuery` for `normal`, and so on."""
 
 
@@ -36,7 +48,7 @@ class BatchItemAnswer(Answer):
 
     status: int
     """HTTP status that the query has at its own endpoint."""
-    answer: dict[str, Any] = ABSENT
+    answer: _Answer = ABSENT
     """Response of the query at its own endpoint."""
     problem: Problem = ABSENT
     """Problem of the query at its own endpoint; pointers are into its own `request`."""

@@ -582,7 +582,7 @@ class Problem(Answer):
     """The HTTP status."""
     detail: str
     """Fault and remedy: the first of `errors`, with its place."""
-    instance: str = ""
+    instance: str = ABSENT
     """URI of the request with its `X-Request-Id`, if the service is at fault."""
-    errors: Annotated[list[ProblemError], Field(max_length=20)] = Field(default=[])
+    errors: Annotated[list[ProblemError], Field(max_length=20)] = ABSENT
     """Invalid values of the request, at most twenty."""

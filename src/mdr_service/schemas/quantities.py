@@ -29,11 +29,19 @@ class Strict(BaseModel):
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: Handler) -> dict[str, Any]:
-        """Return the JSON schema, in which `x-dimension` is the dimension of a quantity."""
+        """Return the JSON schema, with the dimensions of quantities as `x-dimension`.
+
+        The descriptions tell the defaults, because client generators would make members that have
+        a default required.
+        """
         reference = handler(core)
         schema = handler.resolve_ref_schema(reference)
         for member in schema.get("properties", {}).values():
             meaning, dimension = described(member.get("description"))
+            default = member.pop("default", None)
+            if default is not None:
+                shown = ", ".join(default) or "none" if isinstance(default, list) else default
+                meaning = f"{meaning.removesuffix('.')}; default {shown}"
             if meaning:
                 member["description"] = f"{meaning} [{dimension}]" if dimension else meaning
             if dimension:
