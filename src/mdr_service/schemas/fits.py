@@ -8,7 +8,7 @@ from mdr_service.schemas.contacts import Axes, BodyOrRigid, Friction, Material, 
 from mdr_service.schemas.fields import OnceEach
 from mdr_service.schemas.quantities import (
     ABSENT,
-    MANY,
+    Many,
     PoissonsRatio,
     Positive,
     Signed,
@@ -19,7 +19,7 @@ Fitted = Literal["e_star", "contact_point", "force_offset", "work_of_adhesion"]
 LoopFitted = Literal[
     "g_star", "friction_coefficient", "force_offset", "rig_compliance", "displacement_offset"
 ]
-_Curve = Annotated[list[Signed], Field(**MANY | {"min_length": 3})]
+_Curve = Annotated[Many[Signed], Field(min_length=3)]
 
 
 class FitQuery(Query, OnBase):

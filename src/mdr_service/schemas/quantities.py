@@ -88,13 +88,7 @@ BRANCHES: Final = frozenset({"<number>", "<list>", "<rigid>", "<body>", "<moduli
 
 _Number = TypeVar("_Number")
 # Only the first invalid element is reported: a list may have a hundred thousand.
-MANY: Final[dict[str, Any]] = {
-    "min_length": 1,
-    "max_length": SETTINGS.max_length,
-    "fail_fast": True,
-}
-"""Arguments of the field of a list."""
-Many = Annotated[list[_Number], Field(**MANY)]
+Many = Annotated[list[_Number], Field(min_length=1, max_length=SETTINGS.max_length, fail_fast=True)]
 _OneOrMany = Annotated[
     Annotated[_Number, Tag("<number>")] | Annotated[Many[_Number], Tag("<list>")],
     # The discriminator restricts errors to the branch to which the value belongs.
