@@ -1,10 +1,7 @@
 """OpenAPI document of the framework, extended by problem documents and examples."""
 
-from collections.abc import Iterable
 from typing import Any, Final
 
-from mdr_service.queries import QUERIES
-from mdr_service.schemas.answers import Problem
 from mdr_service.schemas.examples import ANSWERS, EXAMPLES
 
 DESCRIPTION: Final = """\
@@ -40,43 +37,14 @@ TAGS: Final = [
 ]
 
 
-def _describe_defaults(schema: dict[str, Any]) -> None:
-    """Move the defaults of optional members to their descriptions.
-
-    Client generators would otherwise make these members required. A default of null means that the
-    member is absent; null itself is not valid input.
-    """
-    for part in schema.get("oneOf", ()):
-        _describe_defaults(part)
-    for member in schema.get("properties", {}).values():
-        default = member.pop("default", None)
-        if default is not None:
-            shown = ", ".join(default) or "none" if isinstance(default, list) else default
-            meaning, bracket, dimension = member["description"].rstrip(".").partition(" [")
-            member["description"] = f"{meaning}; default {shown}{bracket}{dimension}"
-
-
-def _refer(schema: dict[str, Any], member: str, models: Iterable[type]) -> None:
-    """Replace the schema of an untyped member by a choice of several models."""
-    entry = schema["properties"][member]
-    del entry["type"], entry["additionalProperties"]
-    entry["anyOf"] = [{"$ref": f"#/components/schemas/{model.__name__}"} for model in models]
-
-
 def extend(document: dict[str, Any]) -> None:
     """Extend the OpenAPI document of the framework by problem documents and examples.
 
     The framework documents additional responses as JSON only, has examples of single parameters
     only, and adds responses that do not occur.
     """
-    schemas = document["components"]["schemas"]
-    # The service validates each request of a batch separately, so that the model of a batch accepts
-    # any object.
-    _refer(schemas["BatchItem"], "request", [kind.request for kind in QUERIES.values()])
-    _refer(schemas["BatchItemAnswer"], "answer", [kind.response for kind in QUERIES.values()])
-    for name in schemas.keys() - {"Settings", Problem.__name__}:
-        _describe_defaults(schemas[name])
-        for needed in schemas[name].get("dependentRequired", {}).values():
+    for schema in document["components"]["schemas"].values():
+        for needed in schema.get("dependentRequired", {}).values():
             # The framework stores required members as a set, whose order changes at every start.
             needed.sort()
     document["security"] = []

@@ -23,7 +23,6 @@ from mdr_service.schemas import contacts
 from mdr_service.schemas.flat import leaves, nested
 from mdr_service.schemas.load_paths import HistoryQuery
 from mdr_service.schemas.profiles import OF_NUMBERS
-from mdr_service.schemas.quantities import quantity
 from mdr_service.sentences import NUMBER
 from mdr_service.settings import SETTINGS
 
@@ -94,7 +93,9 @@ class Parameters(ResponseParameters):
     fields: ClassVar[Mapping[str, str]]
     """Field of the request by parameter; a parameter gives the field, or an end of its range."""
 
-    n: _Length = quantity("1", "Number of values in a range, including both ends", default=None)
+    n: _Length = Field(
+        default=None, description="Number of values in a range, including both ends [1]"
+    )
     scale: Literal["linear", "log"] | None = Field(
         default=None, description="Spacing of a range, linear by default"
     )

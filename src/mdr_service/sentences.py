@@ -28,17 +28,23 @@ _BODY: Final = 'an object of youngs_modulus and poissons_ratio, or "rigid"'
 _BODIES: Final = f"bodies (two, each {_BODY})"
 _PROFILE: Final = f"an object of kind, one of {_KINDS}, and its fields"
 _PLAIN: Final = "it is not JSON in plain UTF-8 (no compression, no byte order mark)"
-# Sentences by the type of the error, and by its type and field.
+# Sentences by the type of the error, and by its type and field; names in braces are those of its
+# context.
 _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     "bool_type": "must be true or false, without quotes",
     "dict_type": "must be an object",
     "finite_number": FINITE,
     "float_type": f"{NUMBER}, without quotes or a unit",
+    "greater_than": "must be greater than {gt:.15g}",
     "int_from_float": "must be a whole number",
     "int_type": "must be a whole number",
+    "less_than": "must be less than {lt:.15g}",
+    "less_than_equal": "must be at most {le:.15g}",
     "list_type": "must be a list in square brackets",
+    "literal_error": "must be {expected}",
     "string_pattern_mismatch": "must be the numbers of two columns, from 1, such as 2,3",
     "string_type": "must be a text in double quotes",
+    "too_long": "at most {max_length} values are allowed",
     "union_tag_invalid": f"there is no such kind; there are {_KINDS}",
     "union_tag_not_found": f"is required, one of {_KINDS}",
     ("dict_type", "profile"): f"must be {_PROFILE}",
@@ -52,7 +58,6 @@ _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     ("too_long", "bodies"): BODIES,
     ("too_short", "bodies"): BODIES,
 }
-_BOUNDS: Final = {"ge": "at least", "gt": "greater than", "le": "at most", "lt": "less than"}
 REQUESTS: Final[Mapping[str, _Model]] = {
     kind.request.__name__: kind.request for kind in QUERIES.values()
 } | {"BatchItem": BatchItem, "BatchQuery": BatchQuery}
@@ -104,7 +109,8 @@ def sentence(error: ErrorDetails, model: _Model | None) -> str:
     """
     kind, place = error["type"], path(error)
     if found := _SENTENCES.get((kind, _field(place))) or _SENTENCES.get(kind):
-        return found
+        # Words are quoted in the context.
+        return found.format(**error.get("ctx", {})).replace("'", "")
     write = _WRITERS.get(kind)
     return write(error, place, model) if write else error["msg"]
 
@@ -140,35 +146,25 @@ def _no_object(error: ErrorDetails, place: Path, model: _Model | None) -> str:
     return f"must be {_described(_models(error, place, model)) or 'an object'}"
 
 
-def _other_word(error: ErrorDetails, _place: Path, _model: _Model | None) -> str:
-    return f"must be {str(error['ctx']['expected']).replace(chr(39), '')}"
+def _at_least(error: ErrorDetails, place: Path, _model: _Model | None) -> str:
+    least = error["ctx"]["ge"]
+    if 0 < least < 1:
+        return f"{POSITIVE}, at least {least:g}"
+    return f"must be at least {least:.15g}" if least else not_negative(_field(place))
 
 
-def _length(error: ErrorDetails, _place: Path, _model: _Model | None) -> str:
-    if error["type"] == "too_long":
-        return f"at most {error['ctx']['max_length']} values are allowed"
+def _too_short(error: ErrorDetails, _place: Path, _model: _Model | None) -> str:
     least = error["ctx"]["min_length"]
     return f"at least {'one value is' if least == 1 else f'{least} values are'} needed"
-
-
-def _range(error: ErrorDetails, place: Path, _model: _Model | None) -> str:
-    bounds: dict[str, float] = dict(error["ctx"])
-    least = bounds.get("ge")
-    if least is not None and 0 <= least < 1:
-        return f"{POSITIVE}, at least {least:g}" if least else not_negative(_field(place))
-    ((end, bound),) = bounds.items()
-    return f"must be {_BOUNDS[end]} {bound:.15g}"
 
 
 _Writer = Callable[[ErrorDetails, Path, _Model | None], str]
 _WRITERS: Final[Mapping[str, _Writer]] = {
     "extra_forbidden": _unknown,
-    "literal_error": _other_word,
+    "greater_than_equal": _at_least,
     "missing": _missing,
-    "too_long": _length,
-    "too_short": _length,
     "model_type": _no_object,
-    **dict.fromkeys(("greater_than", "greater_than_equal", "less_than", "less_than_equal"), _range),
+    "too_short": _too_short,
 }
 
 

@@ -13,7 +13,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 PREFIX: Final = "MDR_"
 
-
+_Seconds = Annotated[float, Field(gt=0, le=86_400)]
 _Origin = Annotated[str, Field(pattern=r"^(\*|https?://[^/\s]+)$")]
 
 
@@ -24,49 +24,32 @@ def _separated(text: object) -> object:
 class Settings(BaseModel):
     """Limits of a server process; the variable is ``MDR_`` and the name in capitals."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
-    max_body_bytes: int = Field(
-        4 * 1024**2, ge=1024, description="Maximum length of a request body [bytes]."
-    )
-    max_length: int = Field(
-        100_000,
-        ge=2,
-        description="Maximum number of loads, radii, cycles or samples in a request.",
-    )
-    max_numbers: int = Field(
-        1_000_000,
-        ge=2,
-        description="Maximum number of values in a response: loads × radii × quantities.",
-    )
-    max_batch: int = Field(1_000, ge=1, description="Maximum number of queries in a batch.")
-    max_table_points: int = Field(2_000, ge=2, description="Maximum number of points of a table.")
-    max_transfer_bytes: int = Field(
-        32 * 1024**2,
-        ge=0,
-        description="Maximum total length of large bodies in memory; a single request may exceed "
-        "it [bytes].",
-    )
-    compute_processes: int = Field(2, ge=1, le=1_000, description="Number of compute processes.")
-    budget_seconds: float = Field(
-        10.0, gt=0, le=86_400, description="Maximum time of a query in a compute process [s]."
-    )
-    queue_length: int = Field(
-        64, ge=0, description="Maximum number of queries that wait for a process."
-    )
-    queue_seconds: float = Field(
-        4.0, gt=0, le=86_400, description="Maximum time for which a query waits for a process [s]."
-    )
-    request_seconds: float = Field(
-        10.0,
-        gt=0,
-        le=86_400,
-        description="Maximum time in which a request arrives, headers and body, and for which its "
-        "client may read nothing of the response [s].",
-    )
-    cors_origins: Annotated[tuple[_Origin, ...], BeforeValidator(_separated)] = Field(
-        (), description="Origins allowed by CORS, separated by commas."
-    )
+    max_body_bytes: int = Field(4 * 1024**2, ge=1024)
+    """Maximum length of a request body [bytes]."""
+    max_length: int = Field(100_000, ge=2)
+    """Maximum number of loads, radii, cycles or samples in a request."""
+    max_numbers: int = Field(1_000_000, ge=2)
+    """Maximum number of values in a response: loads × radii × quantities."""
+    max_batch: int = Field(1_000, ge=1)
+    """Maximum number of queries in a batch."""
+    max_table_points: int = Field(2_000, ge=2)
+    """Maximum number of points of a table."""
+    max_transfer_bytes: int = Field(32 * 1024**2, ge=0)
+    """Maximum total length of large bodies in memory; a single request may exceed it [bytes]."""
+    compute_processes: int = Field(2, ge=1, le=1_000)
+    """Number of compute processes."""
+    budget_seconds: _Seconds = 10.0
+    """Maximum time of a query in a compute process [s]."""
+    queue_length: int = Field(64, ge=0)
+    """Maximum number of queries that wait for a process."""
+    queue_seconds: _Seconds = 4.0
+    """Maximum time for which a query waits for a process [s]."""
+    request_seconds: _Seconds = 10.0
+    """Maximum time for a request to arrive, and for a client to read nothing of a response [s]."""
+    cors_origins: Annotated[tuple[_Origin, ...], BeforeValidator(_separated)] = ()
+    """Origins allowed by CORS, separated by commas."""
 
     @property
     def shutdown_seconds(self) -> int:

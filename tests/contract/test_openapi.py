@@ -180,5 +180,24 @@ def test_every_member_states_its_dimension() -> None:
                 assert re.search(r"\[[a-z0-9/*^]+\]$", field["description"]), (query, name)
 
 
+def test_members_of_a_schema_are_described_on_one_line_with_dimension_and_default() -> None:
+    schemas = DOCUMENT["components"]["schemas"]
+    for schema in schemas.values():
+        for part in schema.get("oneOf", [schema]):
+            for field in part.get("properties", {}).values():
+                description = field.get("description", "")
+                assert "\n" not in description
+                dimension = re.search(r" \[([^\[]*)\]$", description)
+                assert field.get("x-dimension") == (dimension and dimension[1])
+    assert "default" not in schemas["Cycles"]["properties"]["count"]
+    (count,) = (
+        parameter
+        for parameter in DOCUMENT["paths"]["/v1/tangential/history"]["get"]["parameters"]
+        if parameter["name"] == "count"
+    )
+    for described in (schemas["Cycles"]["properties"]["count"], count):
+        assert described["description"] == "Number of cycles; default 1 [1]"
+
+
 def test_problem_matches_its_schema(client: Client) -> None:
     Problem.model_validate_json(client.post("/v1/normal", {}).content)

@@ -13,6 +13,7 @@ from mdr_service.api.documentation import FILE_FAILURES, PAGE_HEADERS, failures
 from mdr_service.middleware import read_body
 from mdr_service.schemas.answers import Catalogue, Health, ProfileField, ProfileKind, TableAnswer
 from mdr_service.schemas.profiles import MODELS
+from mdr_service.schemas.quantities import described
 from mdr_service.serializers import JSON
 from mdr_service.settings import SETTINGS, Settings
 
@@ -34,12 +35,13 @@ _CATALOGUE: Final = Catalogue(
             fields=[
                 ProfileField(
                     name=name,
-                    dimension=str(extra["x-dimension"]),
-                    description=str(field.description).rpartition(" [")[0],
+                    dimension=dimension,
+                    description=meaning,
                     required=field.is_required(),
                 )
                 for name, field in model.model_fields.items()
-                if isinstance(extra := field.json_schema_extra, dict)
+                for meaning, dimension in [described(field.description)]
+                if dimension
             ],
             closed_forms=list(profiles.KINDS[kind].closed_forms),
         )

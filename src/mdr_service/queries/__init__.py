@@ -19,20 +19,7 @@ from mdr_service.queries.load_paths import history_result, solve_history
 from mdr_service.queries.subsurface import solve_subsurface, subsurface_result
 from mdr_service.queries.torsion import solve_torsion, torsion_result
 from mdr_service.queries.wear import evolution_result, solve_evolution, solve_wear, wear_result
-from mdr_service.schemas.answers import (
-    EvolutionAnswer,
-    FitAnswer,
-    HistoryAnswer,
-    ImpactAnswer,
-    LoopAnswer,
-    NormalAnswer,
-    SolvedAnswer,
-    StressAnswer,
-    SubsurfaceAnswer,
-    TangentialAnswer,
-    TorsionAnswer,
-    WearAnswer,
-)
+from mdr_service.schemas import answers
 from mdr_service.schemas.contacts import NormalQuery, Query, TangentialQuery
 from mdr_service.schemas.fields import StressQuery
 from mdr_service.schemas.fits import FitQuery, LoopQuery
@@ -50,7 +37,7 @@ class QueryType(NamedTuple):
     summary: str
     """Title of the endpoint `POST`."""
     request: type[Query]
-    response: type[SolvedAnswer]
+    response: type[answers.SolvedAnswer]
     solve: Callable[[Any], Any]
     """Function whose docstring is the description of the endpoint in OpenAPI."""
     result: Callable[[Any, Any], dict[str, Any]]
@@ -62,7 +49,7 @@ QUERIES: Final[Mapping[str, QueryType]] = {
         "/v1/normal",
         "Normal contact under a depth, a force or a contact radius",
         NormalQuery,
-        NormalAnswer,
+        answers.NormalAnswer,
         solve_normal,
         contact_result,
     ),
@@ -70,7 +57,7 @@ QUERIES: Final[Mapping[str, QueryType]] = {
         "/v1/normal/fit",
         "Modulus, contact point, offset and adhesion from a measured curve of force over depth",
         FitQuery,
-        FitAnswer,
+        answers.FitAnswer,
         solve_fit,
         plain_result,
     ),
@@ -78,7 +65,7 @@ QUERIES: Final[Mapping[str, QueryType]] = {
         "/v1/tangential",
         "Partial slip under a tangential force or displacement, or a stick radius",
         TangentialQuery,
-        TangentialAnswer,
+        answers.TangentialAnswer,
         solve_tangential,
         contact_result,
     ),
@@ -86,7 +73,7 @@ QUERIES: Final[Mapping[str, QueryType]] = {
         "/v1/tangential/history",
         "Load history: an arbitrary load path or identical cycles",
         HistoryQuery,
-        HistoryAnswer,
+        answers.HistoryAnswer,
         solve_history,
         history_result,
     ),
@@ -94,7 +81,7 @@ QUERIES: Final[Mapping[str, QueryType]] = {
         "/v1/tangential/fit",
         "Shear modulus, friction and compliance of the rig from a measured loop",
         LoopQuery,
-        LoopAnswer,
+        answers.LoopAnswer,
         solve_loop,
         plain_result,
     ),
@@ -102,7 +89,7 @@ QUERIES: Final[Mapping[str, QueryType]] = {
         "/v1/tangential/impact",
         "Oblique impact: rebound, duration and loss of energy by friction",
         ImpactQuery,
-        ImpactAnswer,
+        answers.ImpactAnswer,
         solve_impact,
         plain_result,
     ),
@@ -110,7 +97,7 @@ QUERIES: Final[Mapping[str, QueryType]] = {
         "/v1/torsion",
         "Twist about the axis: torque, rotation and slip",
         TorsionQuery,
-        TorsionAnswer,
+        answers.TorsionAnswer,
         solve_torsion,
         torsion_result,
     ),
@@ -118,7 +105,7 @@ QUERIES: Final[Mapping[str, QueryType]] = {
         "/v1/stress",
         "Surface stresses, slip and displacement over the radius",
         StressQuery,
-        StressAnswer,
+        answers.StressAnswer,
         solve_stress,
         stress_result,
     ),
@@ -126,7 +113,7 @@ QUERIES: Final[Mapping[str, QueryType]] = {
         "/v1/subsurface",
         "Stresses beneath the surface of either body, their peaks and the onset of yield",
         SubsurfaceQuery,
-        SubsurfaceAnswer,
+        answers.SubsurfaceAnswer,
         solve_subsurface,
         subsurface_result,
     ),
@@ -134,7 +121,7 @@ QUERIES: Final[Mapping[str, QueryType]] = {
         "/v1/wear",
         "Limiting state of fretting wear under a small oscillation",
         WearQuery,
-        WearAnswer,
+        answers.WearAnswer,
         solve_wear,
         wear_result,
     ),
@@ -142,7 +129,7 @@ QUERIES: Final[Mapping[str, QueryType]] = {
         "/v1/wear/evolution",
         "Fretting wear over the cycles: profile and pressure up to the limiting state",
         EvolutionQuery,
-        EvolutionAnswer,
+        answers.EvolutionAnswer,
         solve_evolution,
         evolution_result,
     ),

@@ -2,49 +2,49 @@
 
 from dataclasses import replace
 from functools import cached_property
-from typing import Annotated, Any, ClassVar, Final, Literal, NamedTuple, Self
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 from pydantic import Discriminator, Field, Tag, WithJsonSchema, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import GetJsonSchemaHandler as Handler
+from pydantic_core import CoreSchema, PydanticCustomError
 
 from mdr_core import materials
 from mdr_core.validation import LEAST_CHANGE, MOST_CHANGE
 from mdr_service.schemas.profiles import Profile
 from mdr_service.schemas.quantities import (
+    ABSENT,
+    PoissonsRatio,
+    Positive,
     ScalarOrArray,
     SignedScalarOrArray,
     Strict,
-    left_out,
-    optional,
-    poissons_ratio,
-    positive,
-    quantity,
 )
 
 
-def _describe_choice(schema: dict[str, Any]) -> None:
-    """Describe the controls as alternative objects, each with all its fields."""
-    fields = schema.pop("properties")
-    optional = {name: field for name, field in fields.items() if field.get("default") is not None}
-    schema["oneOf"] = [
-        {
-            "title": schema["title"] + "By" + name.title().replace("_", ""),
-            "type": "object",
-            "properties": {name: fields[name], **optional},
-            "required": [name],
-            "additionalProperties": schema["additionalProperties"],
-        }
-        for name in fields
-        if name not in optional
-    ]
-    del schema["additionalProperties"]
-
-
-class Choice(Strict, json_schema_extra=_describe_choice):
+class Choice(Strict):
     """Fields of which exactly one is given, the control."""
 
     accompanying: ClassVar[frozenset[str]] = frozenset()
     """Fields that can accompany any control."""
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: Handler) -> dict[str, Any]:
+        """Return the JSON schema of alternative objects, one for each control."""
+        reference = super().__get_pydantic_json_schema__(core, handler)
+        schema = handler.resolve_ref_schema(reference)
+        fields, extra = schema.pop("properties"), schema.pop("additionalProperties")
+        optional = {name: fields.pop(name) for name in sorted(cls.accompanying)}
+        schema["oneOf"] = [
+            {
+                "title": cls.__name__ + "By" + name.title().replace("_", ""),
+                "type": "object",
+                "properties": {name: field, **optional},
+                "required": [name],
+                "additionalProperties": extra,
+            }
+            for name, field in fields.items()
+        ]
+        return reference
 
     @model_validator(mode="after")
     def _exactly_one(self) -> Self:
@@ -77,46 +77,49 @@ class Choice(Strict, json_schema_extra=_describe_choice):
 class Load(Choice):
     """Normal load, with adhesion down to the pull-off: exactly one control, a number or a list."""
 
-    # An absent control is None; null is not valid input.
-    indentation_depth: SignedScalarOrArray = optional("length", "Indentation depth d")
-    normal_force: SignedScalarOrArray = optional("force", "Normal force F_N")
-    contact_radius: ScalarOrArray = optional("length", "Contact radius a")
-    maximum_pressure: ScalarOrArray = optional(
-        "pressure",
-        "Largest pressure p(r), of profiles without a sharp tip or edge, no tables, no adhesion",
-    )
+    indentation_depth: SignedScalarOrArray = ABSENT
+    """Indentation depth d [length]"""
+    normal_force: SignedScalarOrArray = ABSENT
+    """Normal force F_N [force]"""
+    contact_radius: ScalarOrArray = ABSENT
+    """Contact radius a [length]"""
+    maximum_pressure: ScalarOrArray = ABSENT
+    """Largest pressure p(r), of profiles without a sharp tip or edge, no tables, no adhesion
+    [pressure]"""
 
 
 class Tangential(Choice):
     """Tangential load: exactly one control, one value for all normal loads or one for each."""
 
-    tangential_force: SignedScalarOrArray = optional("force", "Tangential force F_x, |F_x| ≤ µ F_N")
-    tangential_displacement: SignedScalarOrArray = optional(
-        "length", "Tangential displacement u_x of the bodies"
-    )
-    stick_radius: ScalarOrArray = optional("length", "Stick radius c, at most a, not inside a flat")
+    tangential_force: SignedScalarOrArray = ABSENT
+    """Tangential force F_x, |F_x| ≤ µ F_N [force]"""
+    tangential_displacement: SignedScalarOrArray = ABSENT
+    """Tangential displacement u_x of the bodies [length]"""
+    stick_radius: ScalarOrArray = ABSENT
+    """Stick radius c, at most a, not inside a flat [length]"""
 
 
 class Torsion(Choice):
     """Twist about the axis: exactly one control, one value for all normal loads or one for each."""
 
-    torque: SignedScalarOrArray = optional(
-        "force*length", "Torque M, |M| below µ F_N times `torsion_arm`"
-    )
-    rotation: SignedScalarOrArray = optional("1", "Rotation φ of the bodies in radians")
-    stick_radius: ScalarOrArray = optional("length", "Stick radius c, at most a")
+    torque: SignedScalarOrArray = ABSENT
+    """Torque M, |M| below µ F_N times `torsion_arm` [force*length]"""
+    rotation: SignedScalarOrArray = ABSENT
+    """Rotation φ of the bodies in radians [1]"""
+    stick_radius: ScalarOrArray = ABSENT
+    """Stick radius c, at most a [length]"""
 
 
 class BodyMaterial(Strict):
     """Elastic body."""
 
-    youngs_modulus: float = positive("pressure", "Young's modulus E")
-    poissons_ratio: float = poissons_ratio("Poisson's ratio ν")
-    held: materials.Held = left_out(
-        "How a round body is held, on which `model_error` depends: between two "
-        "`contacts` (default), on a `stem` or by its equator, `free`, or as a bump of a `block`. "
-        "Impacts take `free`"
-    )
+    youngs_modulus: Positive
+    """Young's modulus E [pressure]"""
+    poissons_ratio: PoissonsRatio
+    """Poisson's ratio ν [1]"""
+    held: materials.Held = ABSENT
+    """How a round body is held, on which `model_error` depends: between two `contacts` (default),
+    on a `stem` or by its equator, `free`, or as a bump of a `block`. Impacts take `free`"""
 
 
 # The schema is an enumeration, because client generators accept no constant in a choice.
@@ -134,44 +137,27 @@ def as_body(given: BodyMaterial | str) -> materials.Body | Literal["rigid"]:
     return materials.Body(**given.model_dump(exclude_unset=True))
 
 
-# Optional field of several models.
-HOLDS_WITHIN: Final = quantity(
-    "1",
-    "Relative change of a result, for which `holds_while` lists the values of what the model "
-    "leaves out: adhesion, slip, thickness, yield and shape",
-    default=None,
-    ge=LEAST_CHANGE,
-    le=MOST_CHANGE,
-)
-
-
 class ElasticLayer(Strict):
     """Elastic layer on a rigid base: the more compliant body."""
 
-    thickness: float = positive("length", "Thickness h of the layer")
-    base: materials.Base = Field(
-        description="How the layer is held: `bonded` to its base, or sliding on it without friction"
-    )
-    poissons_ratio: float = poissons_ratio(
-        "Poisson's ratio ν of the layer, needed on a bonded base unless the material has it",
-        default=None,
-    )
+    thickness: Positive
+    """Thickness h of the layer [length]"""
+    base: materials.Base
+    """How the layer is held: `bonded` to its base, or sliding on it without friction"""
+    poissons_ratio: PoissonsRatio = ABSENT
+    """Poisson's ratio ν of the layer, needed on a bonded base unless the material has it [1]"""
 
 
 class OnBase(Strict):
     """Thickness of the more compliant body, or the layer that it is."""
 
-    body_thickness: float = positive(
-        "length",
-        "Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the "
-        "warning `thin_body`; half-spaces remain the model of the contact",
-        default=None,
-    )
-    layer: ElasticLayer = left_out(
-        "Layer on a rigid base, with which `/v1/normal` (adhesive contacts too), the normal fields "
-        "of `/v1/stress` and `/v1/normal/fit` compute, up to a = 10 h; E* is the modulus of "
-        "half-spaces of the same materials"
-    )
+    body_thickness: Positive = ABSENT
+    """Thickness h of the more compliant body, bonded to a rigid base, for `model_error` and the
+    warning `thin_body`; half-spaces remain the model of the contact [length]"""
+    layer: ElasticLayer = ABSENT
+    """Layer on a rigid base, with which `/v1/normal` (adhesive contacts too), the normal fields of
+    `/v1/stress` and `/v1/normal/fit` compute, up to a = 10 h; E* is the modulus of half-spaces of
+    the same materials"""
 
     @property
     def on_base(self) -> materials.Layer | None:
@@ -182,32 +168,22 @@ class OnBase(Strict):
 class Elastic(OnBase):
     """Material of a contact."""
 
-    # The field is optional, but not null; hence a plain float with the default None.
-    yield_strength: float = positive(
-        "pressure",
-        "Yield strength Y of the softer body, in uniaxial tension; the response carries the "
-        "warning `yield` where Tresca's criterion is met",
-        default=None,
-    )
-    work_of_adhesion: float = positive(
-        "force/length",
-        "Work of adhesion w, an energy per area: the contact is adhesive (JKR), without friction",
-        default=None,
-    )
-    range_of_adhesion: float = positive(
-        "length",
-        "Distance over which the surfaces attract, for the warning `jkr_range`; with "
-        "`work_of_adhesion`",
-        default=None,
-    )
+    yield_strength: Positive = ABSENT
+    """Yield strength Y of the softer body, in uniaxial tension; the response carries the warning
+    `yield` where Tresca's criterion is met [pressure]"""
+    work_of_adhesion: Positive = ABSENT
+    """Work of adhesion w, an energy per area: the contact is adhesive (JKR), without friction
+    [force/length]"""
+    range_of_adhesion: Positive = ABSENT
+    """Distance over which the surfaces attract, for the warning `jkr_range`; with
+    `work_of_adhesion` [length]"""
 
 
 class Bodies(Elastic):
     """Material given by the two bodies, one of which may be rigid."""
 
-    bodies: list[BodyOrRigid] = quantity(
-        "list", "The two bodies; at most one may be `rigid`", min_length=2, max_length=2
-    )
+    bodies: Annotated[list[BodyOrRigid], Field(min_length=2, max_length=2)]
+    """The two bodies; at most one may be `rigid` [list]"""
 
     @cached_property
     def effective(self) -> materials.Material:
@@ -222,22 +198,15 @@ class Bodies(Elastic):
 class Moduli(Elastic):
     """Material given by the effective moduli of the contact."""
 
-    e_star: float = positive("pressure", "Effective modulus E*, 1/E* = Σ (1 − νᵢ²)/Eᵢ")
-    g_star: float = positive(
-        "pressure",
-        "Effective shear modulus G*, 1/G* = Σ (2 − νᵢ)/(4Gᵢ); needed with friction only",
-        default=None,
-    )
-    shear_modulus: float = positive(
-        "pressure",
-        "Shear modulus G of a twist, 1/G = 1/G₁ + 1/G₂: half of that of two equal bodies",
-        default=None,
-    )
-    poissons_ratio: float = poissons_ratio(
-        "Poisson's ratio ν of the elastic body, needed for stresses beneath its surface; elsewhere "
-        "only warnings and `model_error` depend on it, for which 0.3 is assumed",
-        default=None,
-    )
+    e_star: Positive
+    """Effective modulus E*, 1/E* = Σ (1 − νᵢ²)/Eᵢ [pressure]"""
+    g_star: Positive = ABSENT
+    """Effective shear modulus G*, 1/G* = Σ (2 − νᵢ)/(4Gᵢ); needed with friction only [pressure]"""
+    shear_modulus: Positive = ABSENT
+    """Shear modulus G of a twist, 1/G = 1/G₁ + 1/G₂: half of that of two equal bodies [pressure]"""
+    poissons_ratio: PoissonsRatio = ABSENT
+    """Poisson's ratio ν of the elastic body, needed for stresses beneath its surface; elsewhere
+    only warnings and `model_error` depend on it, for which 0.3 is assumed [1]"""
 
     @cached_property
     def effective(self) -> materials.Material:
@@ -261,9 +230,20 @@ Material = Annotated[
     Discriminator(
         lambda value: "<bodies>" if isinstance(value, dict) and "bodies" in value else "<moduli>"
     ),
-    Field(description="Elastic constants: effective moduli, or two bodies."),
 ]
 
+
+# Fields of several models.
+HoldsWithin = Annotated[
+    float,
+    Field(
+        ge=LEAST_CHANGE,
+        le=MOST_CHANGE,
+        description="Relative change of a result, for which `holds_while` lists the values of what "
+        "the model leaves out: adhesion, slip, thickness, yield and shape [1]",
+    ),
+]
+Friction = Annotated[float, Field(ge=1e-15, le=1e6, description="Coefficient of friction µ [1]")]
 
 LOADS = ("load", "tangential", "torsion", "oscillation")
 """Fields of the loads, normal and tangential."""
@@ -298,6 +278,7 @@ class Query(Strict):
 
     profile: Profile
     material: Material
+    """Elastic constants: effective moduli, or two bodies."""
 
     @property
     def controls(self) -> dict[str, Choice]:
@@ -326,13 +307,8 @@ class NormalQuery(Query):
 
     by_parameters = "Normal contact"
 
-    holds_within: float = HOLDS_WITHIN
+    holds_within: HoldsWithin = ABSENT
     load: Load
-
-
-def friction(**field: Any) -> Any:
-    """Return the field of a coefficient of friction."""
-    return positive("1", "Coefficient of friction µ", low=1e-15, high=1e6, **field)
 
 
 class TangentialQuery(NormalQuery):
@@ -341,5 +317,5 @@ class TangentialQuery(NormalQuery):
     axes = Axes("tangential_displacement", ("tangential_force",), curves="normal_force")
     by_parameters = "Partial slip"
 
-    friction_coefficient: float = friction()
+    friction_coefficient: Friction
     tangential: Tangential

@@ -5,9 +5,9 @@ from typing import Annotated, Any, Final, Literal, TypeVar
 from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
-from mdr_service.schemas.contacts import HOLDS_WITHIN, Load, Query, Tangential, friction
+from mdr_service.schemas.contacts import Friction, HoldsWithin, Load, Query, Tangential
 from mdr_service.schemas.load_paths import History, LoadPath
-from mdr_service.schemas.quantities import Size, left_out, one_of, places, quantity
+from mdr_service.schemas.quantities import ABSENT, Many, Size, one_of
 from mdr_service.settings import SETTINGS
 
 _Name = TypeVar("_Name", bound=str)
@@ -25,19 +25,13 @@ SHEAR_FIELDS: Final = frozenset({"shear_stress", "slip", "foundation_shear"})
 class FieldQuery(Query):
     """Query of fields at given radii, or at radii that the service chooses."""
 
-    radius: list[Size] = places(
-        "Radii r of the fields, in any order. `error_estimate` does not apply at radii within four "
-        "units in the last place of a contact radius or slip front, where a stress varies like a "
-        "square root"
-    )
-    points: int = quantity(
-        "1",
-        "Number of radii that the service chooses in place of a list, from 0 to beyond the contact "
-        "or the worn annulus, clustered at the singular radii",
-        default=None,
-        ge=2,
-        le=SETTINGS.max_length,
-    )
+    radius: Many[Size] = ABSENT
+    """Radii r of the fields, in any order. `error_estimate` does not apply at radii within four
+    units in the last place of a contact radius or slip front, where a stress varies like a square
+    root [length]"""
+    points: Annotated[int, Field(ge=2, le=SETTINGS.max_length)] = ABSENT
+    """Number of radii that the service chooses in place of a list, from 0 to beyond the contact or
+    the worn annulus, clustered at the singular radii [1]"""
     quantities: list[Any]
 
     @property
@@ -56,30 +50,25 @@ def _once_each(names: list[_Name]) -> list[_Name]:
     return names
 
 
-OnceEach: Final = AfterValidator(_once_each)
-"""Validator of a list of names without repetition."""
-
-
-def quantities(description: str, **field: Any) -> Any:
-    """Return the field of the quantities over the radius."""
-    return Field(
-        description=f"Fields to compute, each once; {description}",
-        min_length=1,
-        json_schema_extra={"uniqueItems": True},
-        **field,
-    )
+OnceEach = Annotated[
+    list[_Name],
+    Field(min_length=1, json_schema_extra={"uniqueItems": True}),
+    AfterValidator(_once_each),
+]
+"""Type of a list of names without repetition."""
 
 
 class LoadedQuery(Query):
     """Query of a contact under loads, with or without friction, or at the end of a load path."""
 
-    load: Load = left_out("Exactly one control: depth, force or contact radius.")
-    friction_coefficient: float = friction(default=None)
-    tangential: Tangential = left_out("Exactly one control, with `friction_coefficient`.")
-    history: History = left_out(
-        "In place of `load` and `tangential`: load path, at whose end the fields are computed. "
-        "With `friction_coefficient`."
-    )
+    load: Load = ABSENT
+    """Exactly one control: depth, force or contact radius."""
+    friction_coefficient: Friction = ABSENT
+    tangential: Tangential = ABSENT
+    """Exactly one control, with `friction_coefficient`."""
+    history: History = ABSENT
+    """In place of `load` and `tangential`: load path, at whose end the fields are computed. With
+    `friction_coefficient`."""
 
     @property
     def path(self) -> LoadPath | None:
@@ -104,7 +93,7 @@ class StressQuery(LoadedQuery, FieldQuery, json_schema_extra=_STRESS):
 
     by_parameters = "Fields over the radius"
 
-    holds_within: float = HOLDS_WITHIN
-    quantities: Annotated[list[FieldName], OnceEach] = quantities(
-        "shear_stress, slip and foundation_shear need `tangential` or `history`"
-    )
+    holds_within: HoldsWithin = ABSENT
+    quantities: OnceEach[FieldName]
+    """Fields to compute, each once; shear_stress, slip and foundation_shear need `tangential` or
+    `history`"""

@@ -1,27 +1,25 @@
 """Requests about measured curves: force over depth, and loops of the tangential force."""
 
-from typing import Annotated, Final, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.contacts import Axes, BodyOrRigid, Material, OnBase, Query, friction
+from mdr_service.schemas.contacts import Axes, BodyOrRigid, Friction, Material, OnBase, Query
 from mdr_service.schemas.fields import OnceEach
 from mdr_service.schemas.quantities import (
-    MANY,
+    ABSENT,
+    Many,
+    PoissonsRatio,
+    Positive,
     Signed,
     Size,
-    left_out,
-    optional,
-    poissons_ratio,
-    positive,
-    quantity,
 )
 
 Fitted = Literal["e_star", "contact_point", "force_offset", "work_of_adhesion"]
 LoopFitted = Literal[
     "g_star", "friction_coefficient", "force_offset", "rig_compliance", "displacement_offset"
 ]
-_CURVE: Final = MANY | {"min_length": 3}
+_Curve = Annotated[Many[Signed], Field(min_length=3)]
 
 
 class FitQuery(Query, OnBase):
@@ -30,40 +28,32 @@ class FitQuery(Query, OnBase):
     axes = Axes("indentation_depth", ("normal_force", "residual"), is_measured=True)
     is_long = True
 
-    material: Material = left_out("Elastic constants, if `e_star` is not fitted.")
-    indentation_depth: list[Signed] = quantity(
-        "length", "Measured depths, from any origin and in any order", **_CURVE
-    )
-    normal_force: list[Signed] = quantity(
-        "force", "Measured forces, with or without those before contact", **_CURVE
-    )
-    fit: Annotated[list[Fitted], OnceEach] = Field(
-        default=["e_star", "contact_point"],
-        description="Parameters to fit; all but the modulus are otherwise 0. With "
-        "`work_of_adhesion` the curve is an unloading curve.",
-        min_length=1,
-    )
-    noise: float = positive(
-        "force", "Standard deviation of the forces, by default from the residuals", default=None
-    )
-    segment: Literal["loading", "unloading"] = left_out(
-        "Branch to fit, by the direction of the depth in the order of the lists, without holds; by "
-        "default all points."
-    )
-    time: list[Signed] = optional(
-        "time", "Times of the points, non-decreasing; the drift is 0 at time 0", **_CURVE
-    )
-    drift: Literal["hold"] = left_out(
-        "`hold` to subtract the drift of the depths in the last hold at a constant low force."
-    )
-    drift_rate: Signed = optional("length/time", "Drift rate to subtract, instead of `drift`")
-    drift_rate_error: Size = optional("length/time", "Its standard deviation, 0 by default")
-    poissons_ratio: float = poissons_ratio(
-        "Poisson's ratio ν of the sample, for its `youngs_modulus`", default=None
-    )
-    indenter: BodyOrRigid = Field(
-        default="rigid", description="The body that indents the sample, for its `youngs_modulus`."
-    )
+    material: Material = ABSENT
+    """Elastic constants, if `e_star` is not fitted."""
+    indentation_depth: _Curve
+    """Measured depths, from any origin and in any order [length]"""
+    normal_force: _Curve
+    """Measured forces, with or without those before contact [force]"""
+    fit: OnceEach[Fitted] = Field(default=["e_star", "contact_point"])
+    """Parameters to fit; all but the modulus are otherwise 0. With `work_of_adhesion` the curve is
+    an unloading curve."""
+    noise: Positive = ABSENT
+    """Standard deviation of the forces, by default from the residuals [force]"""
+    segment: Literal["loading", "unloading"] = ABSENT
+    """Branch to fit, by the direction of the depth in the order of the lists, without holds; by
+    default all points."""
+    time: _Curve = ABSENT
+    """Times of the points, non-decreasing; the drift is 0 at time 0 [time]"""
+    drift: Literal["hold"] = ABSENT
+    """`hold` to subtract the drift of the depths in the last hold at a constant low force."""
+    drift_rate: Signed = ABSENT
+    """Drift rate to subtract, instead of `drift` [length/time]"""
+    drift_rate_error: Size = ABSENT
+    """Its standard deviation, 0 by default [length/time]"""
+    poissons_ratio: PoissonsRatio = ABSENT
+    """Poisson's ratio ν of the sample, for its `youngs_modulus` [1]"""
+    indenter: BodyOrRigid = "rigid"
+    """The body that indents the sample, for its `youngs_modulus`."""
 
 
 class LoopQuery(Query):
@@ -76,22 +66,19 @@ class LoopQuery(Query):
     )
     is_long = True
 
-    indentation_depth: float = positive("length", "Indentation depth d", default=None)
-    normal_force: float = positive(
-        "force", "Normal force F_N; exactly one of depth and force", default=None
-    )
-    tangential_displacement: list[Signed] = quantity(
-        "length", "Measured displacements in the order of time, of a steady loop", **_CURVE
-    )
-    tangential_force: list[Signed] = quantity("force", "Measured tangential forces", **_CURVE)
-    fit: Annotated[list[LoopFitted], OnceEach, Field(min_length=1)] = left_out(
-        "Parameters to fit; by default `force_offset` and those of `g_star` (in "
-        "`material`), `friction_coefficient` and `rig_compliance` that are left out. Unless "
-        "fitted, `force_offset` is 0 and `displacement_offset` the middle of the displacements."
-    )
-    friction_coefficient: float = friction(default=None)
-    rig_compliance: Size = optional(
-        "length/force",
-        "Compliance C of the rig in series with the contact, 0 of displacements measured at the "
-        "contact; to fit it needs full slip",
-    )
+    indentation_depth: Positive = ABSENT
+    """Indentation depth d [length]"""
+    normal_force: Positive = ABSENT
+    """Normal force F_N; exactly one of depth and force [force]"""
+    tangential_displacement: _Curve
+    """Measured displacements in the order of time, of a steady loop [length]"""
+    tangential_force: _Curve
+    """Measured tangential forces [force]"""
+    fit: OnceEach[LoopFitted] = ABSENT
+    """Parameters to fit; by default `force_offset` and those of `g_star` (in `material`),
+    `friction_coefficient` and `rig_compliance` that are left out. Unless fitted, `force_offset` is
+    0 and `displacement_offset` the middle of the displacements."""
+    friction_coefficient: Friction = ABSENT
+    rig_compliance: Size = ABSENT
+    """Compliance C of the rig in series with the contact, 0 of displacements measured at the
+    contact; to fit it needs full slip [length/force]"""

@@ -1,10 +1,12 @@
 """Requests about oblique impacts."""
 
-from mdr_core.validation import LOOSEST, TIGHTEST
-from mdr_service.schemas.contacts import Axes, Query, friction
-from mdr_service.schemas.quantities import ScalarOrArray, SignedScalarOrArray, positive, quantity
+from typing import Annotated
 
-_VELOCITY = "length/time"
+from pydantic import Field
+
+from mdr_core.validation import LOOSEST, TIGHTEST
+from mdr_service.schemas.contacts import Axes, Friction, Query
+from mdr_service.schemas.quantities import Positive, ScalarOrArray, SignedScalarOrArray
 
 
 class ImpactQuery(Query):
@@ -17,26 +19,19 @@ class ImpactQuery(Query):
     )
     is_long = True
 
-    friction_coefficient: float = friction()
-    normal_mass: float = positive(
-        "mass", "Effective mass m of the normal motion; of two free bodies 1/m = 1/m₁ + 1/m₂"
-    )
-    tangential_mass: float = positive(
-        "mass",
-        "Effective mass of the contact point in tangential motion; 2/7 m for a solid sphere, "
-        "because a force on its surface spins it too",
-    )
-    normal_velocity: ScalarOrArray = quantity(_VELOCITY, "Velocity of approach, positive")
-    tangential_velocity: SignedScalarOrArray = quantity(
-        _VELOCITY, "Tangential velocity of the contact point before the impact, of either sign"
-    )
-    rtol: float = quantity(
-        "1",
-        "Required relative accuracy: a looser one takes less time, and about 2e-7 can be reached",
-        default=1e-4,
-        ge=TIGHTEST,
-        le=LOOSEST,
-    )
+    friction_coefficient: Friction
+    normal_mass: Positive
+    """Effective mass m of the normal motion; of two free bodies 1/m = 1/m₁ + 1/m₂ [mass]"""
+    tangential_mass: Positive
+    """Effective mass of the contact point in tangential motion; 2/7 m for a solid sphere, because a
+    force on its surface spins it too [mass]"""
+    normal_velocity: ScalarOrArray
+    """Velocity of approach, positive [length/time]"""
+    tangential_velocity: SignedScalarOrArray
+    """Tangential velocity of the contact point before the impact, of either sign [length/time]"""
+    rtol: Annotated[float, Field(ge=TIGHTEST, le=LOOSEST)] = 1e-4
+    """Required relative accuracy: a looser one takes less time, and about 2e-7 can be reached
+    [1]"""
 
     @property
     def loads(self) -> int:

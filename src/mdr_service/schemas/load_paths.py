@@ -1,38 +1,37 @@
 """Requests about load histories: points of a load path, or identical cycles."""
 
 from abc import abstractmethod
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from mdr_core.controls import default_samples
-from mdr_service.schemas.contacts import Axes, Choice, Query, friction
+from mdr_service.schemas.contacts import Axes, Choice, Friction, Query
 from mdr_service.schemas.quantities import (
+    ABSENT,
     LARGEST,
+    Positive,
     ScalarOrArray,
     Signed,
     SignedScalarOrArray,
     Size,
     Strict,
-    left_out,
     one_of,
-    optional,
-    positive,
-    quantity,
 )
 from mdr_service.settings import SETTINGS
 
 Regime = Literal["no_contact", "stick", "partial_slip", "full_slip"]
+_Count = Annotated[int, Field(ge=1, le=SETTINGS.max_length)]
 _Vertex = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 
 class NormalPoints(Choice):
     """Points of the normal load: exactly one control, a number or a list."""
 
-    indentation_depth: SignedScalarOrArray = optional(
-        "length", "Indentation depth d; below 0 a separation"
-    )
-    normal_force: ScalarOrArray = optional("force", "Normal force F_N")
+    indentation_depth: SignedScalarOrArray = ABSENT
+    """Indentation depth d; below 0 a separation [length]"""
+    normal_force: ScalarOrArray = ABSENT
+    """Normal force F_N [force]"""
 
 
 class TangentialPoints(Choice):
@@ -41,12 +40,10 @@ class TangentialPoints(Choice):
     If the lists differ in length, the shorter one contains a single value.
     """
 
-    tangential_displacement: SignedScalarOrArray = optional(
-        "length", "Tangential displacement u_x of the bodies"
-    )
-    tangential_force: SignedScalarOrArray = optional(
-        "force", "Tangential force F_x, |F_x| ≤ µ F_N everywhere on the path"
-    )
+    tangential_displacement: SignedScalarOrArray = ABSENT
+    """Tangential displacement u_x of the bodies [length]"""
+    tangential_force: SignedScalarOrArray = ABSENT
+    """Tangential force F_x, |F_x| ≤ µ F_N everywhere on the path [force]"""
 
 
 class OscillatingNormalLoad(Choice):
@@ -54,34 +51,22 @@ class OscillatingNormalLoad(Choice):
 
     accompanying = frozenset({"amplitude"})
 
-    indentation_depth: Size = optional("length", "Mean indentation depth d")
-    normal_force: Size = optional("force", "Mean normal force F_N")
-    amplitude: Size = quantity(
-        "as the mean",
-        "Amplitude of the normal load, at most the mean, in phase with the tangential load",
-        default=0.0,
-    )
+    indentation_depth: Size = ABSENT
+    """Mean indentation depth d [length]"""
+    normal_force: Size = ABSENT
+    """Mean normal force F_N [force]"""
+    amplitude: Size = 0.0
+    """Amplitude of the normal load, at most the mean, in phase with the tangential load [as the
+    mean]"""
 
 
 class TangentialAmplitude(Choice):
     """Oscillating tangential load: exactly one control, the amplitude about zero."""
 
-    tangential_displacement: float = positive(
-        "length", "Amplitude of the tangential displacement u_x", default=None
-    )
-    tangential_force: float = positive(
-        "force", "Amplitude of the tangential force F_x, at most µ F_N", default=None
-    )
-
-
-def _samples_per_step(default: int | None, text: str = "") -> Any:
-    return quantity(
-        "1",
-        f"Number of samples per load step, even in the controls, the last at its end{text}",
-        default=default,
-        ge=1,
-        le=SETTINGS.max_length,
-    )
+    tangential_displacement: Positive = ABSENT
+    """Amplitude of the tangential displacement u_x [length]"""
+    tangential_force: Positive = ABSENT
+    """Amplitude of the tangential force F_x, at most µ F_N [force]"""
 
 
 class LoadPath(Strict):
@@ -112,7 +97,8 @@ class History(LoadPath):
 
     normal: NormalPoints
     tangential: TangentialPoints
-    samples_per_step: int = _samples_per_step(1)
+    samples_per_step: _Count = 1
+    """Number of samples per load step, even in the controls, the last at its end [1]"""
 
     @property
     def steps(self) -> int:
@@ -127,12 +113,12 @@ class Cycles(LoadPath):
 
     normal: OscillatingNormalLoad
     tangential: TangentialAmplitude
-    count: int = quantity("1", "Number of cycles", default=1, ge=1, le=SETTINGS.max_length)
-    samples_per_step: int = _samples_per_step(
-        None,
-        "; by default 20 where a depth and a tangential force, or a normal force and a "
-        "displacement, both oscillate, else 1",
-    )
+    count: _Count = 1
+    """Number of cycles [1]"""
+    samples_per_step: _Count = ABSENT
+    """Number of samples per load step, even in the controls, the last at its end; by default 20
+    where a depth and a tangential force, or a normal force and a displacement, both oscillate, else
+    1 [1]"""
 
     @property
     def steps(self) -> int:
@@ -148,21 +134,20 @@ class Cycles(LoadPath):
 class HistoryState(Strict):
     """State at the end of a history, from which another request continues it."""
 
-    contact: str = Field(
-        description="Digest of the profile, the moduli, the friction coefficient and the controls.",
-        max_length=64,
-    )
-    normal: Signed = quantity("as the control", "Last depth or normal force")
-    tangential: Signed = quantity("as the control", "Last tangential displacement or force")
-    dissipated_energy: float = quantity(
-        "force*length", "Energy dissipated by slip since the start", ge=0, le=LARGEST**3
-    )
-    regime: Regime = Field(description="Slip regime of the last sample.")
-    polyline: list[_Vertex] = Field(
-        description="Slip memory: the vertices of a polyline from the axis, without the load point "
-        "[length], or [length²] under a tangential force: normal coordinate + anchor and normal "
-        "coordinate − anchor."
-    )
+    contact: Annotated[str, Field(max_length=64)]
+    """Digest of the profile, the moduli, the friction coefficient and the controls."""
+    normal: Signed
+    """Last depth or normal force [as the control]"""
+    tangential: Signed
+    """Last tangential displacement or force [as the control]"""
+    dissipated_energy: Annotated[float, Field(ge=0, le=LARGEST**3)]
+    """Energy dissipated by slip since the start [force*length]"""
+    regime: Regime
+    """Slip regime of the last sample."""
+    polyline: list[_Vertex]
+    """Slip memory: the vertices of a polyline from the axis, without the load point [length], or
+    [length²] under a tangential force: normal coordinate + anchor and normal coordinate −
+    anchor."""
 
 
 class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles")]}):
@@ -171,14 +156,16 @@ class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles
     axes = Axes("tangential_displacement", ("tangential_force",), in_order=True)
     by_parameters = "Cycles of the tangential load"
 
-    friction_coefficient: float = friction()
-    history: History = left_out("Arbitrary load path, given by its points.")
-    cycles: Cycles = left_out("In place of `history`: identical cycles of the tangential load.")
-    initial_state: HistoryState = left_out(
-        "`final_state` of a history of this contact and these controls, which is carried on; with "
-        "`history` only."
-    )
-    return_state: bool = Field(default=False, description="Return `final_state`.")
+    friction_coefficient: Friction
+    history: History = ABSENT
+    """Arbitrary load path, given by its points."""
+    cycles: Cycles = ABSENT
+    """In place of `history`: identical cycles of the tangential load."""
+    initial_state: HistoryState = ABSENT
+    """`final_state` of a history of this contact and these controls, which is carried on; with
+    `history` only."""
+    return_state: bool = False
+    """Return `final_state`."""
 
     @property
     def loads(self) -> int:

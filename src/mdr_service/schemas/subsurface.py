@@ -4,8 +4,8 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import Field
 
-from mdr_service.schemas.fields import NEEDED, LoadedQuery, OnceEach, quantities
-from mdr_service.schemas.quantities import Signed, Size, one_of, places, quantity
+from mdr_service.schemas.fields import NEEDED, LoadedQuery, OnceEach
+from mdr_service.schemas.quantities import ABSENT, Many, Signed, Size, one_of
 
 SubsurfaceName = Literal[
     "stress_xx",
@@ -35,28 +35,22 @@ class SubsurfaceQuery(LoadedQuery, json_schema_extra=_SCHEMA):
 
     is_long = True
 
-    body: Literal[1, 2] = Field(
-        default=1,
-        description="Body 1, which has the profile and takes the tangential force, or body 2.",
-    )
-    x: list[Signed] = places("Coordinates from the axis along a positive tangential force")
-    y: Signed = quantity("length", "Transverse coordinate, of all points", default=0.0)
-    z: list[Size] = places("Depths in the body, 0 on its surface")
-    points: int = quantity(
-        "1",
-        "Number of x values and of z values that the service chooses in place of lists, up to 1.5 "
-        "times the largest contact radius",
-        default=None,
-        ge=2,
-        le=1000,
-    )
-    quantities: Annotated[list[SubsurfaceName], OnceEach] = quantities(
-        "tension is positive, and principal_1 ≥ principal_2 ≥ principal_3", default=["von_mises"]
-    )
-    largest: bool = Field(
-        default=False,
-        description="Return the largest von Mises and maximum shear stress of the body, and where.",
-    )
+    body: Literal[1, 2] = 1
+    """Body 1, which has the profile and takes the tangential force, or body 2."""
+    x: Many[Signed] = ABSENT
+    """Coordinates from the axis along a positive tangential force [length]"""
+    y: Signed = 0.0
+    """Transverse coordinate, of all points [length]"""
+    z: Many[Size] = ABSENT
+    """Depths in the body, 0 on its surface [length]"""
+    points: Annotated[int, Field(ge=2, le=1000)] = ABSENT
+    """Number of x values and of z values that the service chooses in place of lists, up to 1.5
+    times the largest contact radius [1]"""
+    quantities: OnceEach[SubsurfaceName] = Field(default=["von_mises"])
+    """Fields to compute, each once; tension is positive, and principal_1 ≥ principal_2 ≥
+    principal_3"""
+    largest: bool = False
+    """Return the largest von Mises and maximum shear stress of the body, and where."""
 
     @property
     def positions(self) -> int:

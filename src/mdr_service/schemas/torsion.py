@@ -1,10 +1,12 @@
 """Requests about a twist of the contact about its axis."""
 
-from typing import Annotated, Literal
+from typing import Literal
+
+from pydantic import Field
 
 from mdr_core.torsion.contact import NEEDED
-from mdr_service.schemas.contacts import Axes, Load, Torsion, friction
-from mdr_service.schemas.fields import FieldQuery, OnceEach, quantities
+from mdr_service.schemas.contacts import Axes, Friction, Load, Torsion
+from mdr_service.schemas.fields import FieldQuery, OnceEach
 
 TorsionField = Literal["pressure", "shear_stress"]
 
@@ -20,8 +22,7 @@ class TorsionQuery(FieldQuery):
     is_long = True
 
     load: Load
-    friction_coefficient: float = friction()
+    friction_coefficient: Friction
     torsion: Torsion
-    quantities: Annotated[list[TorsionField], OnceEach] = quantities(
-        "with `radius` or `points`", default=["shear_stress"]
-    )
+    quantities: OnceEach[TorsionField] = Field(default=["shear_stress"])
+    """Fields to compute, each once; with `radius` or `points`"""

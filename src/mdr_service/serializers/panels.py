@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mdr_service.schemas import answers
 from mdr_service.schemas.contacts import Axes
-from mdr_service.schemas.quantities import heading
+from mdr_service.schemas.quantities import described, heading
 
 Array = NDArray[np.float64]
 # Of more loads than this an evenly spaced selection is drawn.
@@ -22,11 +22,12 @@ FRAME: Final = 35
 
 # Label and dimension of each quantity.
 _QUANTITIES: Final = {
-    name: (heading(field.description or name), str(field.json_schema_extra["x-dimension"]))
+    name: (heading(meaning), dimension)
     for model in vars(answers).values()
     if isinstance(model, type) and issubclass(model, answers.Answer)
     for name, field in model.model_fields.items()
-    if isinstance(field.json_schema_extra, dict)
+    for meaning, dimension in [described(field.description)]
+    if dimension
 }
 # Quantities that share a panel.
 _SHARED: Final = {"initial_profile": "profile", "limiting_profile": "profile"}
