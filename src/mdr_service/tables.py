@@ -24,17 +24,26 @@ def read(content: bytes, kind: str, columns: list[int] | None) -> bytes:
             for i, (each, unit) in enumerate(zip(table.titles, units, strict=True))
         ],
         **dict(zip(_LISTS[kind], table.values, strict=True)),
-        "units": [units[i][1] for i in table.taken],
-        "scales": [units[i][2] for i in table.taken],
+        "units": [units[i][1] for i in table.places],
+        "scales": [units[i][2] for i in table.places],
         "lines": table.lines,
-        "notes": [
-            f"Column {i + 1}, “{table.titles[i].name}”, is taken as the {quantity}."
-            for i, quantity in table.taken.items()
-        ],
+        "notes": _notes(table),
     }
     if kind == "curve":
         result |= _in_time(table)
     return write_json(result)
+
+
+def _notes(table: ParsedFile) -> list[str]:
+    """Return which columns are taken, and what is done to their numbers."""
+    done = {"area": ", with r = √(A/π)"}
+    if table.is_reversed:
+        done["depth"] = ", with its sign reversed: it falls towards the sample"
+    names = [f", “{each.name}”," if each.name else "" for each in table.titles]
+    return [
+        f"Column {i + 1}{names[i]} is taken as the {quantity}{done.get(quantity, '')}."
+        for i, quantity in table.taken.items()
+    ]
 
 
 def _in_time(table: ParsedFile) -> dict[str, Any]:

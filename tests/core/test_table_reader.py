@@ -171,12 +171,7 @@ def test_headings_with_prefixes_and_powers_are_read_whole(
         ),
         ("Displacement (nm)\tLoad (mN)\tTime (s)", "0.1\t5\t0\n0.2\t6\t1", "nm mN"),
         ("Displacement Into Surface,Load On Sample,Time\nnm,mN,s", "0.1,5,0\n0.2,6,1", "nm mN"),
-        ("Calc_Ramp_Ex_nm Defl_nN_Ex", "0.1 5\n0.2 6", "nm nN"),
-        (
-            "# columns: time vDeflection tipSampleSeparation\n# units: s N m",
-            "0 5 0.1\n1 6 0.2",
-            "m N",
-        ),
+        ("Ind_nm Defl_nN_Ex", "0.1 5\n0.2 6", "nm nN"),
         ("Time,Extension,Load\n(s),(mm),(N)", '"0","0.1","5"\n"1","0.2","6"', "mm N"),
         ("Prüfzeit;Standardweg;Standardkraft\ns;mm;N", "0;0,1;5\n1;0,2;6", "mm N"),
         ("Time,Force,Stroke\nsec,N,mm", "0.0,5,0.1\n1.0,6,0.2", "mm N"),
@@ -296,10 +291,10 @@ FILES = {
         (
             "# xPosition: 1.2e-5\n"
             "# k: 0.045 N/m\n"
-            "# columns: height vDeflection smoothedHeight\n"
+            "# columns: height vDeflection verticalTipPosition\n"
             "# units: m N m\n"
-            "0.1 5 0.1\n"
-            "0.2 6 0.2\n"
+            "0.1 5 -0.1\n"
+            "0.2 6 -0.2\n"
         ),
         "m N",
     ),
@@ -433,3 +428,96 @@ def test_times_are_in_seconds_and_need_a_unit(heading: str, unit: float | None) 
 def test_column_of_segments_names_their_kinds(cells: list[str], kinds: list[str] | None) -> None:
     rows = "".join(f"{i};{2 * i};{cell}\n" for i, cell in enumerate(cells))
     assert parse(f"d [nm];F [mN];Part\n{rows}".encode(), CURVE).segments == kinds
+
+
+@pytest.mark.parametrize(
+    "heading",
+    [
+        "Tip-Sample Separation [nm];Vertical Deflection [pN]",
+        "tipSampleSeparation_nm;vDeflection_pN",
+        "Sep (nm);Force (pN)",
+        "Separation_nm_Ex;Defl_pN_Ex",
+        "Vertical Tip Position (smoothed) [nm];Vertical Deflection [pN]",
+        "Tip-surface distance/nm;F/pN",
+        "Gap [nm];Normal force [pN]",
+    ],
+)
+def test_separation_is_the_negative_of_the_depth(tmp_path: Path, heading: str) -> None:
+    file = tmp_path / "curve.csv"
+    file.write_text(f"{heading}\n50;0\n0;0\n-20;7\n", "utf-8")
+    curve = read_curve(file)
+    assert curve.is_reversed
+    assert curve.indentation_depth.tolist() == [-5e-8, 0, 2e-8]
+    assert curve.normal_force.tolist() == [0, 0, 7e-12]
+
+
+@pytest.mark.parametrize(
+    "heading",
+    [
+        "Height (measured) [nm];Vertical Deflection [pN]",
+        "Head Height (measured & smoothed);Vertical Deflection [pN]",
+        "smoothedStrainGaugeHeight [nm];vDeflection [pN]",
+        "Calc_Ramp_Ex_nm;Defl_pN_Ex",
+        "Height_Sensor_nm_Ex;Defl_pN_Ex",
+        "Defl_nm_Ex;Defl_pN_Ex",
+        "ZSnsr (nm);Force (pN)",
+        "Piezo (nm);Load (pN)",
+        "Z Scan (nm);Force (pN)",
+    ],
+)
+def test_position_of_a_cantilever_is_no_depth_unless_it_is_chosen(heading: str) -> None:
+    # A cantilever of 0.1 N/m that presses with 10 nN bends by 100 nm.
+    rows = "0;0\n10;5\n20;12\n"
+    with pytest.raises(InputError, match="Line 2: column 1 is a position or a deflection of"):
+        parse(f"{heading}\n{rows}".encode(), CURVE)
+    assert parse(f"{heading}\n{rows}".encode(), CURVE, [1, 2]).values[0] == [0, 10, 20]
+    named = f"d [nm];{heading.partition(';')[2]}\n{rows}"
+    assert parse(named.encode(), CURVE).values == [[0, 10, 20], [0, 5, 12]]
+
+
+def test_columns_of_approach_and_retraction_are_two_segments(tmp_path: Path) -> None:
+    names = "Height_Sensor_nm_Ex Height_Sensor_nm_Rt Separation_nm_Rt Separation_nm_Ex"
+    file = tmp_path / "curve.txt"
+    file.write_text(f"{names} Defl_pN_Ex Defl_pN_Rt\n0 8 -3 5 0 9\n8 0 4 -2 9 1\n", "utf-8")
+    curve = read_curve(file)
+    assert curve.indentation_depth.tolist() == [-5e-9, 2e-9, 3e-9, -4e-9]
+    assert curve.normal_force.tolist() == [0, 9e-12, 9e-12, 1e-12]
+    assert curve.segments == ["loading", "loading", "unloading", "unloading"]
+    assert curve.time is None
+    # Of a force on both branches the depth of one leaves the other open.
+    file.write_text("d_nm_Ex Defl_pN_Ex Defl_pN_Rt\n0 0 9\n8 9 1\n", "utf-8")
+    with pytest.raises(InputError, match="Defl Ex and Defl Rt may each be the force"):
+        read_curve(file)
+
+
+def test_segments_named_in_comments_are_those_of_the_rows_beneath(tmp_path: Path) -> None:
+    columns = "# columns: tipSampleSeparation vDeflection seriesTime time\n# units: m N s s\n"
+    parts = {"extend": "5 0 1 1\n-2 9 2 2\n", "pause": "-3 9 3 1\n", "retract": "4 1 4 1\n"}
+    text = "\n".join(f"#\n# segment: {name}\n{columns}#\n{parts[name]}" for name in parts)
+    file = tmp_path / "curve.txt"
+    file.write_text(f"# TEXT EXPORT\n{text}", "utf-8")
+    curve = read_curve(file)
+    assert curve.indentation_depth.tolist() == [-5, 2, 3, -4]
+    assert curve.segments == ["loading", "loading", "hold", "unloading"]
+    # The time of the series, not that of each segment, which begins anew.
+    assert curve.time is not None
+    assert curve.time.tolist() == [0, 1, 2, 3]
+
+
+@pytest.mark.parametrize(
+    ("heading", "taken"),
+    [
+        ("Raw Displacement;Raw Load;Displacement Into Surface;Load On Sample", (2, 3)),
+        ("Displacement;Load;Displacement Into Surface;Load On Sample", (2, 3)),
+        ("RAW DEPTH;RAW LOAD;DEPTH;LOAD", (2, 3)),
+        ("Lateral force [N];Piezo [nm];Indentation [nm];Fz [N]", (2, 3)),
+        ("Lateral Deflection [N];Height [m];Tip Position [m];Vertical Deflection [N]", (2, 3)),
+        ("Fx, N;Position (x), mm;Position (z), mm;Fz, N", (2, 3)),
+        ("Sep (m);ZSnsr (m);Ind (m);Force (N)", (2, 3)),
+    ],
+)
+def test_corrected_columns_have_priority_over_raw_and_lateral_ones(
+    heading: str, taken: tuple[int, int]
+) -> None:
+    table = parse(f"{heading}\n1;2;3;4\n2;3;4;5\n".encode(), CURVE)
+    assert tuple(table.taken) == taken

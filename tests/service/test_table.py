@@ -47,6 +47,31 @@ def test_columns_that_are_left_open_are_listed_and_can_be_chosen(client: Client)
         assert document["errors"][0]["pointer"].startswith("/columns") or wrong in {"2,3", "5,9"}
 
 
+def test_reversed_sign_of_a_separation_is_noted(client: Client) -> None:
+    text = "Separation_nm_Ex Separation_nm_Rt Defl_nN_Ex Defl_nN_Rt\n5 -3 0 9\n-2 4 9 1\n"
+    status, document = read(client, text)
+    assert status == 200
+    TableAnswer.model_validate(document)
+    assert document["indentation_depth"] == [-5, 2, 3, -4]
+    assert (document["units"], document["lines"]) == (["nm", "nN"], [2, 3, 2, 3])
+    assert [each["quantity"] for each in document["columns"]] == [
+        "depth",
+        "depth",
+        "force",
+        "force",
+    ]
+    assert [(each["kind"], each["last"]) for each in document["segments"]] == [
+        *(("loading", 1), ("unloading", 3))
+    ]
+    falls = "is taken as the depth, with its sign reversed: it falls towards the sample."
+    assert document["notes"] == [
+        f"Column 1, “Separation Ex”, {falls}",
+        f"Column 2, “Separation Rt”, {falls}",
+        "Column 3, “Defl Ex”, is taken as the force.",
+        "Column 4, “Defl Rt”, is taken as the force.",
+    ]
+
+
 def test_profile_without_a_heading_names_no_unit(client: Client) -> None:
     status, document = read(client, "0 0\n1 0,5\n2 2\n", "profile")
     assert status == 200

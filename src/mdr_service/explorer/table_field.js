@@ -57,10 +57,10 @@ export function tableField(root, kind, { change, fail }) {
   const textOf = ({ r, f, units }) =>
     [heads.map((head, i) => `${head} [${units[i]}]`).join(", "), ...r.map((x, i) => `${x}, ${f[i]}`)].join("\n");
 
-  const describe = ({ r, named, ofAreas }) => {
-    const units = named?.every(Boolean) ? "; units from the heading" : "";
-    const areas = ofAreas ? "; r = √(A/π) from the areas" : "";
-    part(".count").textContent = `${r.length} points${areas}${named ? units : ""}.`;
+  const describe = ({ r, notes = [] }) => {
+    // The notes name the columns of a curve over depth, not those of a loop.
+    const said = heads[0] === kind.heads[0] ? notes : [];
+    part(".count").textContent = [`${r.length} points.`, ...said].join(" ");
   };
 
   const give = (table) => {
@@ -72,7 +72,7 @@ export function tableField(root, kind, { change, fail }) {
   const rewrite = (table) => {
     part(".columns").replaceChildren();
     text.value = textOf(table);
-    give({ ...table, named: undefined, lines: undefined });
+    give({ ...table, notes: undefined, lines: undefined });
   };
   /** Offer the columns of a file `[number, name]`, those that are `taken` as chosen. */
   const offerColumns = (content, columns, taken) => {
@@ -84,7 +84,7 @@ export function tableField(root, kind, { change, fail }) {
     });
     const chosen = () => choices.map(([, choice]) => choice.value);
     for (const [, choice] of choices) choice.addEventListener("change", () => chosen().every(Boolean) && read(content, chosen()));
-    part(".columns").replaceChildren(...(columns.length > 2 ? choices.map(([label]) => label) : []));
+    part(".columns").replaceChildren(...(columns.length > 2 || !taken.length ? choices.map(([label]) => label) : []));
   };
   const read = async (content = text.value, columns = undefined) => {
     given = [content, columns];
@@ -105,7 +105,7 @@ export function tableField(root, kind, { change, fail }) {
       const open = heads.filter((_, i) => !units[i]);
       if (open.length) throw new Error(`no heading names the unit of ${open.join(" and ")}: choose it`);
       offerThinning({ ...table, units });
-      give({ ...table, units, named });
+      give({ ...table, units });
     } catch (error) {
       shown = null;
       mark(root, error.message);

@@ -491,9 +491,11 @@ class TableAnswer(Answer):
     units: list[str | None] = Field(description="Units of the two lists, null without one.")
     scales: list[float | None] = Field(description="These units in metres or newtons.")
     lines: list[int] = Field(description="Line of each point in the file, from 1.")
-    notes: list[str] = Field(description="Which columns are taken.")
+    notes: list[str] = Field(
+        description="Which columns are taken, and which with the sign reversed."
+    )
     segments: list[TableSegment] = left_out(
-        "Segments of a curve, by a column that names them, else by the direction of the depth."
+        "Segments of a curve, if the file names them, else by the direction of the depth."
     )
     time: list[float] = left_out(
         "Times of a curve from its first point in seconds, if a column has a unit of time."
