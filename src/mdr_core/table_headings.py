@@ -153,13 +153,16 @@ def titles_of(
 def _title(cell: str, line: int) -> Title:
     """Return a title: `r [mm]`, `r (10^-6 m)`, `r/mm`, `r, mm`, `load_micro_N` or `A(h) [mm²]`."""
     cell = re.sub(_ARGUMENT, "", cell)
-    # The last bracket holds the unit, unless its words leave the meaning: Height (measured) [nm].
-    for bracket in reversed([*re.finditer(r"[\[({]([^\])}]*)[\])}]?", cell)]):
-        name, inside = f"{cell[: bracket.start()]}{cell[bracket.end() :]}".strip(), bracket[1]
+    # Brackets hold the unit, or words that leave the meaning: Height (measured) [nm].
+    brackets = re.findall(r"([\[({]([^\])}]*)[\])}]?)", cell)
+    for bracket, inside in brackets:
         if unit := unit_of(inside):
-            return Title(name, unit, "", line)
+            return Title(cell.replace(bracket, "").strip(), unit, "", line)
+    for bracket, inside in brackets:
         if not _NEUTRAL.issuperset(re.findall(r"\w+", inside.lower())):
-            return Title(name, None, f"the unit {inside.strip()}", line)
+            return Title(
+                cell.replace(bracket, "").strip(), None, f"the unit {inside.strip()}", line
+            )
     parts = re.split(r"(?<=[^\W\d])[ _]|[/,]", cell)
     # The unit is what follows the name, or a word within it: Defl_nN_Ex.
     ends = [(i, len(parts)) for i in range(1, len(parts))]
@@ -206,7 +209,7 @@ def places_of(
     if len(numeric) == 2 and kind == PROFILE and not any(titles[i].name for i in numeric):
         return [[i] for i in numeric]
     names = {i + 1: titles[i].name for i in numeric}
-    places = [_best(titles, numeric, quantity) for quantity in kind]
+    places = [best_of(titles, numeric, quantity) for quantity in kind]
     if kind == CURVE and not places[0]:
         for i in numeric:
             if [i] not in places and titles[i].has(_DEFLECTED):
@@ -234,7 +237,7 @@ def places_of(
     return places
 
 
-def _best(titles: Sequence[Title], numeric: Sequence[int], quantity: str) -> list[int]:
+def best_of(titles: Sequence[Title], numeric: Sequence[int], quantity: str) -> list[int]:
     """Return the indices of the columns with the first of the names of a quantity."""
     ranks = {i: rank for i in numeric if (rank := _rank(titles[i], quantity)) is not None}
     return [i for i, rank in ranks.items() if rank == min(ranks.values())]
@@ -244,11 +247,6 @@ def _are_branches(titles: Sequence[Title]) -> bool:
     """Return whether two columns are one quantity on loading and on unloading: z_Ex and z_Rt."""
     kinds = sorted(str(segment_of(each.name)) for each in titles)
     return kinds == BRANCHES and titles[0].unit == titles[1].unit
-
-
-def time_of(titles: Sequence[Title], numeric: Sequence[int]) -> int | None:
-    """Return the index of the best column of time that has a unit, or None."""
-    return next(iter(_best(titles, [i for i in numeric if titles[i].unit], "time")), None)
 
 
 def segments_of(columns: Sequence[list[str]]) -> list[str] | None:

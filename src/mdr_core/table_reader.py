@@ -17,12 +17,12 @@ from mdr_core.table_headings import (
     PROFILE,
     UNITS,
     Title,
+    best_of,
     cells_of,
     known_units,
     places_of,
     refuse,
     segments_of,
-    time_of,
     titles_of,
     unit_of,
 )
@@ -95,23 +95,18 @@ class ParsedFile(NamedTuple):
     """Columns of a file, and the two lists that are taken."""
 
     titles: list[Title]
-    taken: dict[int, str]
-    """Quantity of the columns by their index: radius or area, and height; depth and force."""
-    values: list[list[float]]
+    taken: dict[str, list[int]]
+    """Indices of the columns of radius or area, and height; of depth and force."""
+    values: list[Array]
     """Numbers as written, of an area r = (A/pi)^(1/2), of a separation its negative."""
     lines: list[int]
     """Line of each point."""
-    time: list[float] | None = None
+    time: Array | None = None
     """Times of a curve from its first point [s], of a non-decreasing column with a unit."""
     segments: list[str] | None = None
     """Kind of the segment of each point of a curve, if the file names it."""
     is_reversed: bool = False
     """Whether the depths are the negative of a column that falls towards the sample."""
-
-    @property
-    def places(self) -> list[int]:
-        """Index of a column of each of the two quantities."""
-        return list({quantity: i for i, quantity in self.taken.items()}.values())
 
 
 def read_table(
@@ -173,9 +168,8 @@ def read_curve(file: str | Path, units: Sequence[str | None] = (None, None)) -> 
     array([0.e+00, 2.e-06, 5.e-06])
     """
     table = _parsed(file, CURVE)
-    time = None if table.time is None else np.array(table.time)
     depth, force = _in_units(table, CURVE, units, (1.0, 1.0))
-    return MeasuredCurve(depth, force, time, table.segments, table.is_reversed)
+    return MeasuredCurve(depth, force, table.time, table.segments, table.is_reversed)
 
 
 def metres(name: str) -> float:
@@ -196,8 +190,8 @@ def _in_units(
     table: ParsedFile, kind: Sequence[str], given: Sequence[str | None], to: Sequence[float]
 ) -> list[Array]:
     member, lists = ("length_unit" if kind == PROFILE else "units",), []
-    columns = zip(table.places, table.values, given, to, kind, strict=True)
-    for place, values, unit, target, wanted in columns:
+    columns = zip(table.taken.values(), table.values, given, to, kind, strict=True)
+    for (place, *_), values, unit, target, wanted in columns:
         heading, known = table.titles[place].unit, unit_of(unit or "")
         if unit and (not known or known[0] != MEASURES[wanted]):
             raise InputError(member, f"{unit} is none of {known_units(wanted)}")
@@ -208,7 +202,8 @@ def _in_units(
             detail = f"is required: no heading names the unit of {HEADS[wanted]}"
             raise InputError(member, detail)
         # The product of a decimal number and a power of ten, without its rounding error.
-        lists.append(np.array([float(f"{each * (known[2] / target):.15g}") for each in values]))
+        numbers = (values * (known[2] / target)).tolist()
+        lists.append(np.array([float(f"{each:.15g}") for each in numbers]))
     return lists
 
 
@@ -327,7 +322,7 @@ def _table(
     places = [[number - 1] for number in columns or ()] or places_of(titles, numeric, kind, first)
     table = _taken(rows, titles, places, kind)
     if kind == PROFILE:
-        if not columns and not any(titles[i].name or titles[i].unit for i in table.taken):
+        if not columns and not any(titles[i].name or titles[i].unit for (i,) in places):
             _require_profile(table)
         return table
     if len(places[0]) > 1:
@@ -335,22 +330,21 @@ def _table(
     words = [i for i in range(len(cells)) if i not in numeric]
     texts = [[row.cells[i] if i < len(row.cells) else "" for row in rows] for i in words]
     segments = segments_of([*texts, [row.segment for row in rows]])
-    others = [i for i in numeric if i not in table.taken]
-    return table._replace(time=_time(rows, titles, others), segments=segments)
+    return table._replace(time=_time(rows, titles, numeric), segments=segments)
 
 
 def _taken(
     rows: Sequence[_Row], titles: list[Title], places: Sequence[list[int]], kind: Sequence[str]
 ) -> ParsedFile:
     """Return the table with the numbers of the columns at the places, see `places_of`."""
-    taken: dict[int, str] = {}
+    taken: dict[str, list[int]] = {}
     values, is_reversed = [], False
     lines = [row.line for row in rows] * len(places[0])
     for columns, wanted in zip(places, kind, strict=True):
         title = titles[columns[0]]
         is_area = wanted == "radius" and _is_area(title)
         quantity = "area" if is_area else wanted
-        taken |= dict.fromkeys(columns, quantity)
+        taken[quantity] = columns
         if title.unknown or (title.unit and title.unit[0] != MEASURES[quantity]):
             measure, unit, _ = title.unit or ("", "", 0.0)
             unknown = title.unknown or f"the unit {unit}{'²' * (measure == 'area')}"
@@ -364,7 +358,7 @@ def _taken(
                 raise refuse(lines[int(np.argmax(bad))], detail)
         if wanted == "depth" and title.falls:
             is_reversed, numbers = True, 0.0 - numbers
-        values.append((np.sqrt(numbers / np.pi) if is_area else numbers).tolist())
+        values.append(np.sqrt(numbers / np.pi) if is_area else numbers)
     return ParsedFile(titles, taken, values, lines, is_reversed=is_reversed)
 
 
@@ -382,7 +376,8 @@ def _require_profile(table: ParsedFile) -> None:
 def _is_area(title: Title) -> bool:
     """Return whether a column is an area, by its name or its unit; r² in mm² is none."""
     measured = title.unit is not None and title.unit[0] == "area"
-    return not _AREAS.isdisjoint(title.words) or (measured and title.name[:1].lower() not in "rx")
+    is_radius = title.name.lower().startswith(("r", "x"))
+    return not _AREAS.isdisjoint(title.words) or (measured and not is_radius)
 
 
 def _column(rows: Sequence[_Row], i: int) -> Array:
@@ -390,10 +385,9 @@ def _column(rows: Sequence[_Row], i: int) -> Array:
     return np.array([float(each) for each in column.split()])
 
 
-def _time(rows: Sequence[_Row], titles: list[Title], numeric: list[int]) -> list[float] | None:
-    place = time_of(titles, numeric)
-    if place is None or not (unit := titles[place].unit):
-        return None
-    times = _column(rows, place)
-    rises = np.isfinite(times).all() and np.all(np.diff(times) >= 0)
-    return ((times - times[0]) * unit[2]).tolist() if rises else None
+def _time(rows: Sequence[_Row], titles: list[Title], numeric: list[int]) -> Array | None:
+    for i in best_of(titles, [i for i in numeric if titles[i].unit], "time")[:1]:
+        times, (_, _, scale) = _column(rows, i), titles[i].unit or ("", "", 1.0)
+        if np.isfinite(times).all() and np.all(np.diff(times) >= 0):
+            return (times - times[0]) * scale
+    return None
