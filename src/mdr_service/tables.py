@@ -5,6 +5,7 @@ from typing import Any, Final
 import numpy as np
 
 from mdr_core import curve_segments
+from mdr_core.profiles.table_points import axis_of
 from mdr_core.table_headings import CURVE, PROFILE
 from mdr_core.table_reader import ParsedFile, parse
 from mdr_service.serializers import write_json
@@ -32,6 +33,8 @@ def read(content: bytes, kind: str, columns: list[int] | None) -> bytes:
     }
     if kind == "curve":
         result |= _in_time(table)
+    else:
+        result["axis"] = axis_of(*table.values)[0]
     return write_json(result)
 
 

@@ -486,6 +486,9 @@ class TableAnswer(Answer):
     columns: list[TableColumn] = Field(description="All columns, in their order.")
     r: list[float] = left_out("Radii of a profile.")
     f: list[float] = left_out("Heights of a profile.")
+    axis: float | None = left_out(
+        "Radius of the axis of a profile, null if the points lie on one side of it."
+    )
     indentation_depth: list[float] = left_out("Depths of a curve.")
     normal_force: list[float] = left_out("Forces of a curve.")
     units: list[str | None] = Field(description="Units of the two lists, null without one.")
