@@ -162,7 +162,7 @@ def _content(arguments: argparse.Namespace) -> bytes:
 def _curve(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object]:
     """Return the lists of the curve in a file, in metres, newtons and seconds.
 
-    If a column tells the segments, they are those of a fit without the drift of a hold.
+    If the file names the segments, they are those of a fit without the drift of a hold.
     """
     if not arguments.file:
         raise InputError((), "a fit by options needs the file of its curve: mdr fit curve.csv")
@@ -171,6 +171,9 @@ def _curve(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
         raise InputError(("curve_units",), "gives the units of depth and force, such as nm,uN")
     with pointing({"units": ("curve_units",)}):
         curve = read_curve(arguments.file, [unit or None for unit in units])
+    if curve.is_reversed:
+        detail = "depths are the separations in the file with their sign reversed"
+        _say(arguments, arguments.file, detail)
     used = np.ones(curve.normal_force.size, dtype=bool)
     if curve.segments and "segment" in given and "drift" not in given:
         branches = [kind for kind in dict.fromkeys(curve.segments) if kind != "hold"]

@@ -17,11 +17,15 @@ _WORDS: Final = json.loads(files("mdr_core").joinpath("table_words.json").read_t
 _PREFIXES, _UNITS = _WORDS["prefixes"], _WORDS["units"]
 # Names of each quantity, and words beside a name that leave its meaning.
 _NAMES, _NEUTRAL = _WORDS["names"], frozenset(_WORDS["neutral"])
+# Parts of names of depths that fall towards the sample, and of positions of a cantilever, which are
+# no depths before its deflection is subtracted.
+_FALLING, _DEFLECTED = _WORDS["falling"], _WORDS["deflected"]
 # Words of each kind of segment; of several the first kind is meant, as in "hold at peak load".
 _SEGMENTS: Final = {kind: frozenset(words) for kind, words in _WORDS["segments"].items()}
 UNITS: Final = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "nm": 1e-9}
 """Units of length of results, in metres."""
 PROFILE, CURVE = ("radius", "height"), ("depth", "force")
+BRANCHES: Final = ["loading", "unloading"]
 HEADS: Final = {"radius": "r", "height": "f", "depth": "d", "force": "F"}
 MEASURES: Final = dict.fromkeys(HEADS, "length") | {
     each: each for each in ("force", "area", "time")
@@ -52,6 +56,20 @@ class Title(NamedTuple):
     unknown: str = ""
     """What is not understood."""
     line: int = 0
+
+    @property
+    def words(self) -> list[str]:
+        """Words of the name in lower case."""
+        return [word for word in re.split(r"[\W\d_]+", self.name.lower()) if word]
+
+    def has(self, parts: Sequence[str]) -> bool:
+        """Return whether the name has one of the parts, its words written together."""
+        return any(part in "".join(self.words) for part in parts)
+
+    @property
+    def falls(self) -> bool:
+        """Whether it is a depth that falls towards the sample, such as a separation."""
+        return self.has(_FALLING)
 
 
 class ColumnsError(InputError):
@@ -135,18 +153,25 @@ def titles_of(
 def _title(cell: str, line: int) -> Title:
     """Return a title: `r [mm]`, `r (10^-6 m)`, `r/mm`, `r, mm`, `load_micro_N` or `A(h) [mm²]`."""
     cell = re.sub(_ARGUMENT, "", cell)
-    name, bracket, inside = re.match(r"([^\[({]*)([\[({]?)([^\])}]*)", cell).groups()  # type: ignore[union-attr]
-    parts = re.split(r"(?<=[^\W\d])[ _]|[/,]", name)
+    # Brackets hold the unit, or words that leave the meaning: Height (measured) [nm].
+    brackets = re.findall(r"([\[({]([^\])}]*)[\])}]?)", cell)
+    for bracket, inside in brackets:
+        if unit := unit_of(inside):
+            return Title(cell.replace(bracket, "").strip(), unit, "", line)
+    for bracket, inside in brackets:
+        if not _NEUTRAL.issuperset(re.findall(r"\w+", inside.lower())):
+            return Title(
+                cell.replace(bracket, "").strip(), None, f"the unit {inside.strip()}", line
+            )
+    parts = re.split(r"(?<=[^\W\d])[ _]|[/,]", cell)
     # The unit is what follows the name, or a word within it: Defl_nN_Ex.
     ends = [(i, len(parts)) for i in range(1, len(parts))]
     ends += [(i, i + 1) for i in range(1, len(parts)) if len(parts[i]) > 1]
-    for i, end in [(len(parts), len(parts))] if bracket else ends:
-        if unit := unit_of(inside if bracket else " ".join(parts[i:end])):
+    for i, end in ends:
+        if unit := unit_of(" ".join(parts[i:end])):
             return Title(" ".join(parts[:i] + parts[end:]).strip(), unit, "", line)
-    unknown = f"the unit {inside.strip()}" if re.search(r"\w", inside) else ""
-    if re.search(_MULTIPLIER, name):
-        unknown = f"the unit or factor in “{name.strip()}”"
-    return Title(name.strip(), None, unknown, line)
+    unknown = f"the unit or factor in “{cell.strip()}”" if re.search(_MULTIPLIER, cell) else ""
+    return Title(cell.strip(), None, unknown, line)
 
 
 def _rank(title: Title, quantity: str) -> int | None:
@@ -155,8 +180,10 @@ def _rank(title: Title, quantity: str) -> int | None:
     # A known unit decides, whatever the name.
     if measure not in {None, MEASURES[quantity]} and (measure, quantity) != ("area", "radius"):
         return None
-    words = [w for w in re.split(r"[\W\d_]+", title.name.lower()) if w not in _NEUTRAL]
-    for name in ("".join(re.split(r"[\W\d_]+", title.name.lower())), *words[: len(words) == 1]):
+    if quantity == "depth" and title.has(_DEFLECTED):
+        return None
+    words = [word for word in title.words if word not in _NEUTRAL]
+    for name in ("".join(title.words), *words[: len(words) == 1]):
         if name in order:
             return order.index(name)
     # A length may be a radius or a height; an area is that of a tip.
@@ -165,8 +192,8 @@ def _rank(title: Title, quantity: str) -> int | None:
 
 def places_of(
     titles: Sequence[Title], numeric: Sequence[int], kind: Sequence[str], line: int
-) -> list[int]:
-    """Return the indices of the two columns.
+) -> list[list[int]]:
+    """Return the indices of the columns of each quantity: one, or those of loading and unloading.
 
     Parameters
     ----------
@@ -180,21 +207,29 @@ def places_of(
     ColumnsError : columns that the titles do not tell apart; it asks for their names.
     """
     if len(numeric) == 2 and kind == PROFILE and not any(titles[i].name for i in numeric):
-        return list(numeric)
-    places, names = [], {i + 1: titles[i].name for i in numeric}
-    for quantity in kind:
-        ranks = [(_rank(titles[i], quantity), i) for i in numeric]
-        ranked = sorted((rank, i) for rank, i in ranks if rank is not None)
-        if len(ranked) > 1 and ranked[0][0] == ranked[1][0]:
-            both = " and ".join(titles[i].name for _, i in ranked[:2])
+        return [[i] for i in numeric]
+    names = {i + 1: titles[i].name for i in numeric}
+    places = [best_of(titles, numeric, quantity) for quantity in kind]
+    if kind == CURVE and not places[0]:
+        for i in numeric:
+            if [i] not in places and titles[i].has(_DEFLECTED):
+                detail = (
+                    f"column {i + 1} is a position or a deflection of a cantilever, no depth: take "
+                    "the tip-sample separation, or name the column of depths d"
+                )
+                raise ColumnsError(line, detail, names)
+    if kind == CURVE and all(_are_branches([titles[i] for i in best]) for best in places):
+        return [sorted(best, key=lambda i: str(segment_of(titles[i].name))) for best in places]
+    for quantity, best in zip(kind, places, strict=True):
+        if len(best) > 1:
+            both = " and ".join(titles[i].name for i in best[:2])
             detail = f"{both} may each be the {quantity}: name one of them {quantity}"
             raise ColumnsError(line, detail, names)
-        places += [i for _, i in ranked[:1]] or [-1]
-    left = [i for i in numeric if i not in places and not titles[i].unit]
-    if len(numeric) == 2 and left and -1 in places:
+    if len(numeric) == 2 and [] in places:
         # The one that is known decides the other.
-        places[places.index(-1)] = left[0]
-    if -1 in places:
+        left = [i for i in numeric if [i] not in places and not titles[i].unit]
+        places[places.index([])] = left[:1]
+    if [] in places:
         asked = " and ".join(f"the {quantity} {HEADS[quantity]}" for quantity in kind)
         form = "r [mm];f [µm]" if kind == PROFILE else "d [nm];F [mN]"
         detail = f"{len(titles)} columns; name {asked} in a line above, as {form}"
@@ -202,20 +237,25 @@ def places_of(
     return places
 
 
-def time_of(titles: Sequence[Title], numeric: Sequence[int]) -> int | None:
-    """Return the index of the best column of time that has a unit, or None."""
-    ranks = [(_rank(titles[i], "time"), i) for i in numeric if titles[i].unit]
-    return min(((rank, i) for rank, i in ranks if rank is not None), default=(0, None))[1]
+def best_of(titles: Sequence[Title], numeric: Sequence[int], quantity: str) -> list[int]:
+    """Return the indices of the columns with the first of the names of a quantity."""
+    ranks = {i: rank for i in numeric if (rank := _rank(titles[i], quantity)) is not None}
+    return [i for i, rank in ranks.items() if rank == min(ranks.values())]
 
 
-def segments_of(rows: Sequence[Sequence[str]], numeric: Sequence[int]) -> list[str] | None:
+def _are_branches(titles: Sequence[Title]) -> bool:
+    """Return whether two columns are one quantity on loading and on unloading: z_Ex and z_Rt."""
+    kinds = sorted(str(segment_of(each.name)) for each in titles)
+    return kinds == BRANCHES and titles[0].unit == titles[1].unit
+
+
+def segments_of(columns: Sequence[list[str]]) -> list[str] | None:
     """Return the kind of segment of each row, from the first column of such words only.
 
     Empty cells continue the segment above.
     """
-    for i in sorted(set(range(len(rows[0]))) - set(numeric)):
-        cells = [row[i] if i < len(row) else "" for row in rows]
-        known = {cell: _segment_of(cell) for cell in {*cells} - {""}}
+    for cells in columns:
+        known = {cell: segment_of(cell) for cell in {*cells} - {""}}
         # A column of one word is no column of segments.
         if None not in (kinds := set(known.values())) and len(kinds) > 1 and cells[0]:
             for row in range(1, len(cells)):
@@ -224,8 +264,9 @@ def segments_of(rows: Sequence[Sequence[str]], numeric: Sequence[int]) -> list[s
     return None
 
 
-def _segment_of(cell: str) -> str | None:
-    words = set(re.split(r"[\W\d_]+", cell.lower()))
+def segment_of(text: str) -> str | None:
+    """Return the kind of segment that a word of a text names, or None."""
+    words = set(re.split(r"[\W\d_]+", text.lower()))
     return next((kind for kind, known in _SEGMENTS.items() if words & known), None)
 
 

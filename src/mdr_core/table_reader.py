@@ -10,18 +10,19 @@ import numpy as np
 from mdr_core.doubles import TINY
 from mdr_core.errors import InputError
 from mdr_core.table_headings import (
+    BRANCHES,
     CURVE,
     HEADS,
     MEASURES,
     PROFILE,
     UNITS,
     Title,
+    best_of,
     cells_of,
     known_units,
     places_of,
     refuse,
     segments_of,
-    time_of,
     titles_of,
     unit_of,
 )
@@ -52,13 +53,20 @@ _NUMBERLIKE: Final = re.compile(r"(?ai)[-+]?[\d.,]*\d[.,]?([ed][-+]?\d+)?")
 _DECIMAL: Final = str.maketrans(",dD", ".ee")
 # Quoted number with commas before its thousands, beside which 3,000 in quotes is not 3.
 _THOUSANDS: Final = re.compile(r'" *[-+]?\d{1,3}(,\d{3})*,\d{3}(\.\d*|,\d{3}) *"')
-# Number of a line, and its cells.
-_Row = tuple[int, list[str]]
+# Comment that names the segment of the rows beneath it, in files of JPK.
+_SEGMENT: Final = re.compile(r"segment: *(\w+)$")
 # Bytes of the longest file, some 10^5 points: more take seconds.
 _LARGEST: Final = 4_000_000
 # Height over radius, as written, above which columns without names may be h and A(h): A(h)/h of a
 # tip in nanometres is in the hundreds, f/r of a ball in micrometres over millimetres is 10.
 _STEEPEST: Final = 30.0
+
+
+class _Row(NamedTuple):
+    line: int
+    cells: list[str]
+    segment: str
+    """Name of the segment in the last comment of one."""
 
 
 class Points(NamedTuple):
@@ -80,23 +88,27 @@ class MeasuredCurve(NamedTuple):
     time: Array | None = None
     """Times from the first point [s], None without a column of them."""
     segments: list[str] | None = None
-    """Kind of the segment of each point, None unless a column tells it."""
+    """Kind of the segment of each point, None unless the file names it."""
+    is_reversed: bool = False
+    """Whether the depths are the negative of a separation, which falls towards the sample."""
 
 
 class ParsedFile(NamedTuple):
     """Columns of a file, and the two lists that are taken."""
 
     titles: list[Title]
-    taken: dict[int, str]
-    """Quantity of the two columns by their index: radius or area, and height; depth and force."""
-    values: list[list[float]]
-    """Numbers as written, of an area r = (A/pi)^(1/2)."""
+    taken: dict[str, list[int]]
+    """Indices of the columns of radius or area, and height; of depth and force."""
+    values: list[Array]
+    """Numbers as written, of an area r = (A/pi)^(1/2), of a separation its negative."""
     lines: list[int]
     """Line of each point."""
-    time: list[float] | None = None
+    time: Array | None = None
     """Times of a curve from its first point [s], of a non-decreasing column with a unit."""
     segments: list[str] | None = None
-    """Kind of the segment of each point of a curve, if a column tells it."""
+    """Kind of the segment of each point of a curve, if the file names it."""
+    is_reversed: bool = False
+    """Whether the depths are the negative of a column that falls towards the sample."""
 
 
 def read_table(
@@ -139,7 +151,9 @@ def read_curve(file: str | Path, units: Sequence[str | None] = (None, None)) -> 
 
     Parameters
     ----------
-    file : see `read_table`; columns of depth and force, or distance and load.
+    file : see `read_table`; columns of depth and force, or distance and load. The depth of a
+        column of tip-sample separations is their negative. Two columns of each quantity, on
+        approach and on retraction, are two segments in succession.
     units : units of depth and force, where no heading names them.
 
     Raises
@@ -156,9 +170,8 @@ def read_curve(file: str | Path, units: Sequence[str | None] = (None, None)) -> 
     array([0.e+00, 2.e-06, 5.e-06])
     """
     table = _parsed(file, CURVE)
-    time = None if table.time is None else np.array(table.time)
     depth, force = _in_units(table, CURVE, units, (1.0, 1.0))
-    return MeasuredCurve(depth, force, time, table.segments)
+    return MeasuredCurve(depth, force, table.time, table.segments, table.is_reversed)
 
 
 def metres(name: str) -> float:
@@ -179,8 +192,8 @@ def _in_units(
     table: ParsedFile, kind: Sequence[str], given: Sequence[str | None], to: Sequence[float]
 ) -> list[Array]:
     member, lists = ("length_unit" if kind == PROFILE else "units",), []
-    columns = zip(table.taken.items(), table.values, given, to, kind, strict=True)
-    for (place, _), values, unit, target, wanted in columns:
+    columns = zip(table.taken.values(), table.values, given, to, kind, strict=True)
+    for (place, *_), values, unit, target, wanted in columns:
         heading, known = table.titles[place].unit, unit_of(unit or "")
         if unit and (not known or known[0] != MEASURES[wanted]):
             raise InputError(member, f"{unit} is none of {known_units(wanted)}")
@@ -191,7 +204,8 @@ def _in_units(
             detail = f"is required: no heading names the unit of {HEADS[wanted]}"
             raise InputError(member, detail)
         # The product of a decimal number and a power of ten, without its rounding error.
-        lists.append(np.array([float(f"{each * (known[2] / target):.15g}") for each in values]))
+        numbers = (values * (known[2] / target)).tolist()
+        lists.append(np.array([float(f"{each:.15g}") for each in numbers]))
     return lists
 
 
@@ -226,7 +240,7 @@ def parse(content: bytes, kind: Sequence[str], columns: Sequence[int] | None = N
         if error:
             errors.append((len(rows), error))
         elif rows:
-            titles = titles_of(heading, separator, max(len(cells) for _, cells in rows), kind)
+            titles = titles_of(heading, separator, max(len(row.cells) for row in rows), kind)
             return _table(rows, titles, separator, kind, columns)
     # Of the dialects, the one in which most lines are numbers is probably meant.
     raise max(errors[1:] or errors, key=lambda each: each[0])[1]
@@ -278,16 +292,17 @@ def _rows(
     columns : indices of the numbers in each row; empty for those in the first row.
     """
     rows: list[_Row] = []
-    heading = []
+    heading, segment = [], ""
     for number, comment, text in lines:
         if comment or not text:
+            segment = named[1] if (named := _SEGMENT.match(text)) else segment
             heading += [] if rows else [(number, text)]
             continue
         cells = cells_of(text, separator)
         found = _numbers(cells, form)
         if found and found == (columns or found):
             columns = found
-            rows.append((number, cells))
+            rows.append(_Row(number, cells, segment))
         elif rows or form.fullmatch(cells[0]):
             count = len(columns) or max(len(cells), 2)
             return rows, heading, refuse(number, f"{count} numbers are expected")
@@ -303,64 +318,83 @@ def _table(
     kind: Sequence[str],
     columns: Sequence[int] | None,
 ) -> ParsedFile:
-    first, cells = rows[0]
+    first, cells, _ = rows[0]
     numeric = [i for i, cell in enumerate(cells) if _NUMBERLIKE.fullmatch(cell)]
     doubtful = separator == "," and len(cells) > 2 and not any(each.name for each in titles)
-    if doubtful and all(re.fullmatch(r"[-+]?\d+", row[i]) for _, row in rows for i in numeric):
+    if doubtful and all(re.fullmatch(r"[-+]?\d+", row.cells[i]) for row in rows for i in numeric):
         detail = "a comma may separate columns or decimals; separate columns by ; or tabs"
         raise refuse(first, detail)
     if wrong := [number for number in columns or () if number - 1 not in numeric]:
         raise refuse(first, f"column {wrong[0]} holds no numbers")
-    places = [number - 1 for number in columns or ()] or places_of(titles, numeric, kind, first)
-    taken, values = {}, []
-    for i, wanted in zip(places, kind, strict=True):
-        title = titles[i]
+    places = [[number - 1] for number in columns or ()] or places_of(titles, numeric, kind, first)
+    table = _taken(rows, titles, places, kind)
+    if kind == PROFILE:
+        if not columns and not any(titles[i].name or titles[i].unit for (i,) in places):
+            _require_profile(table)
+        return table
+    if len(places[0]) > 1:
+        return table._replace(segments=[each for each in BRANCHES for _ in rows])
+    words = [i for i in range(len(cells)) if i not in numeric]
+    texts = [[row.cells[i] if i < len(row.cells) else "" for row in rows] for i in words]
+    segments = segments_of([*texts, [row.segment for row in rows]])
+    return table._replace(time=_time(rows, titles, numeric), segments=segments)
+
+
+def _taken(
+    rows: Sequence[_Row], titles: list[Title], places: Sequence[list[int]], kind: Sequence[str]
+) -> ParsedFile:
+    """Return the table with the numbers of the columns at the places, see `places_of`."""
+    taken: dict[str, list[int]] = {}
+    values, is_reversed = [], False
+    lines = [row.line for row in rows] * len(places[0])
+    for columns, wanted in zip(places, kind, strict=True):
+        title = titles[columns[0]]
         is_area = wanted == "radius" and _is_area(title)
-        taken[i] = quantity = "area" if is_area else wanted
+        quantity = "area" if is_area else wanted
+        taken[quantity] = columns
         if title.unknown or (title.unit and title.unit[0] != MEASURES[quantity]):
             measure, unit, _ = title.unit or ("", "", 0.0)
             unknown = title.unknown or f"the unit {unit}{'²' * (measure == 'area')}"
             raise refuse(title.line, f"{unknown} is none of {known_units(quantity)}")
-        numbers = _column(rows, i)
+        numbers = np.concatenate([_column(rows, i) for i in columns])
         for bad, detail in (
             (~np.isfinite(numbers), "a number is too large"),
             (numbers < (0 if is_area else -np.inf), "an area is negative"),
         ):
             if bad.any():
-                raise refuse(rows[int(np.argmax(bad))][0], detail)
-        values.append((np.sqrt(numbers / np.pi) if is_area else numbers).tolist())
-    if kind == PROFILE and not columns and not any(titles[i].name or titles[i].unit for i in taken):
-        rise = np.ptp(values[1]) / max(np.abs(values[0]).max(), TINY)
-        if rise > _STEEPEST:
-            detail = (
-                f"the second column rises {rise:.3g} times as much as the first: name the columns "
-                "in a line above, as r [mm];f [µm] for a profile or h [nm];A [nm²] for areas"
-            )
-            raise refuse(first, detail)
-    table = ParsedFile(titles, taken, values, [line for line, _ in rows])
-    if kind == PROFILE:
-        return table
-    others = [i for i in numeric if i not in taken]
-    segments = segments_of([cells for _, cells in rows], numeric)
-    return table._replace(time=_time(rows, titles, others), segments=segments)
+                raise refuse(lines[int(np.argmax(bad))], detail)
+        if wanted == "depth" and title.falls:
+            is_reversed, numbers = True, 0.0 - numbers
+        values.append(np.sqrt(numbers / np.pi) if is_area else numbers)
+    return ParsedFile(titles, taken, values, lines, is_reversed=is_reversed)
+
+
+def _require_profile(table: ParsedFile) -> None:
+    """Raise InputError if columns without names are so steep that they may be h and A(h)."""
+    rise = np.ptp(table.values[1]) / max(np.abs(table.values[0]).max(), TINY)
+    if rise > _STEEPEST:
+        detail = (
+            f"the second column rises {rise:.3g} times as much as the first: name the columns "
+            "in a line above, as r [mm];f [µm] for a profile or h [nm];A [nm²] for areas"
+        )
+        raise refuse(table.lines[0], detail)
 
 
 def _is_area(title: Title) -> bool:
     """Return whether a column is an area, by its name or its unit; r² in mm² is none."""
-    words = re.split(r"[\W\d_]+", title.name.lower())
     measured = title.unit is not None and title.unit[0] == "area"
-    return bool(_AREAS & set(words)) or (measured and not re.match("[rx]", words[0]))
+    is_radius = title.name.lower().startswith(("r", "x"))
+    return not _AREAS.isdisjoint(title.words) or (measured and not is_radius)
 
 
 def _column(rows: Sequence[_Row], i: int) -> Array:
-    column = " ".join(row[i] for _, row in rows).translate(_DECIMAL)
+    column = " ".join(row.cells[i] for row in rows).translate(_DECIMAL)
     return np.array([float(each) for each in column.split()])
 
 
-def _time(rows: Sequence[_Row], titles: list[Title], numeric: list[int]) -> list[float] | None:
-    place = time_of(titles, numeric)
-    if place is None or not (unit := titles[place].unit):
-        return None
-    times = _column(rows, place)
-    rises = np.isfinite(times).all() and np.all(np.diff(times) >= 0)
-    return ((times - times[0]) * unit[2]).tolist() if rises else None
+def _time(rows: Sequence[_Row], titles: list[Title], numeric: list[int]) -> Array | None:
+    for i in best_of(titles, [i for i in numeric if titles[i].unit], "time")[:1]:
+        times, (_, _, scale) = _column(rows, i), titles[i].unit or ("", "", 1.0)
+        if np.isfinite(times).all() and np.all(np.diff(times) >= 0):
+            return (times - times[0]) * scale
+    return None

@@ -124,6 +124,17 @@ def test_segments_named_in_the_file_have_priority_over_the_depths(
     assert "--segment: must be one of the segments in the file" in capsys.readouterr().err
 
 
+def test_fit_of_a_separation_reverses_and_reports_its_sign(tmp_path: Path, capsys: Capture) -> None:
+    curve, result = tmp_path / "curve.csv", tmp_path / "fit.json"
+    rows = "".join(f"{10 - 10 * i};{force}\n" for i, force in enumerate(FORCES))
+    curve.write_text("Tip-Sample Separation [nm];Vertical Deflection [µN]\n" + rows, "utf-8")
+    assert main(["fit", str(curve), *FIT_OPTIONS, "-o", str(result)]) == 0
+    fitted = json.loads(result.read_text("utf-8"))["indentation_depth"]
+    expected = [1e-8 * (i - 1) for i in range(len(FORCES))]
+    assert fitted == pytest.approx(expected, rel=1e-12, abs=0)
+    assert "the separations in the file with their sign reversed" in capsys.readouterr().err
+
+
 def test_a_fit_by_options_needs_its_curve(capsys: Capture) -> None:
     assert main(["fit", *FIT_OPTIONS]) == 2
     assert "needs the file of its curve" in capsys.readouterr().err

@@ -264,10 +264,13 @@ def test_units_of_a_pasted_table_are_those_of_its_heading(visit: Visit) -> None:
     # A ball of radius 10 mm, in two units; without a heading in those that are chosen.
     points = [(0.01 * i, 0.005 * i * i) for i in range(41)]
     note = visit.page.locator("#table-note")
-    for heading, (a, b) in {"r [mm]; f [µm]": (1, 1), "x/nm; z/nm": (1e6, 1e3)}.items():
+    for heading, (a, b) in {"r [mm]; f [µm]": (1, 1), "r/nm; f/nm": (1e6, 1e3)}.items():
         rows = [f"{r * a:.6g};{f * b:.6g}" for r, f in points]
         pasted(visit, "\n".join([heading, *rows]))
-        assert note.inner_text() == "41 points; units from the heading."
+        assert note.inner_text() == (
+            "41 points. Column 1, “r”, is taken as the radius. "
+            "Column 2, “f”, is taken as the height."
+        )
         assert visit.number("Contact radius a").startswith("0.186")
     visit.page.select_option("#unit-r", "mm")
     visit.page.locator("#warnings").get_by_text("check the units of the table").wait_for()
@@ -310,7 +313,7 @@ def test_area_function_fills_the_table(visit: Visit) -> None:
     visit.page.fill("#largest-height", "300")
     with visit.changing():
         visit.page.click(".use-area")
-    assert note.inner_text() == "200 points; r = √(A/π) from the areas; units from the heading."
+    assert note.inner_text().startswith("200 points. Column 2, “A”, is taken as the area, with r =")
     assert visit.page.input_value("#unit-r") == "nm"
     assert visit.number("Contact radius a").startswith("63.66")
     # With a term that makes A(h) negative at the end of the tip, from a height at which it holds.
@@ -334,7 +337,7 @@ def test_curve_from_an_instrument_is_fitted(visit: Visit, tmp_path: Path) -> Non
     with visit.changing():
         visit.page.set_input_files("#curve-file", file)
     note = visit.page.locator("#curve-note").inner_text()
-    assert note == "80 points; units from the heading."
+    assert note.startswith("80 points. Column 2, “Displacement”, is taken as the depth. Column 3")
     modulus = visit.number("Effective modulus E*").split()
     assert float(modulus[0]) == pytest.approx(2, rel=1e-6, abs=0)
     assert modulus[-1] == "MPa"

@@ -164,14 +164,3 @@ def test_deviations_of_a_table_are_heights(client: Client) -> None:
     (shown,) = evaluated("messages.js", "module.inWords(...call)", [[text, page, {}]])
     assert re.search(r"deviates by \S+ nm at radius \S+ mm, and by \S+ nm in the root", shown)
     assert "see “Error by the points of a table”" in shown
-
-
-def test_axis_of_a_worn_ball_is_found_in_any_window_about_it() -> None:
-    calls = []
-    for first, last in ((0, 825), (0, 700), (150, 600), (412.5, 800)):
-        r = np.arange(first, last, 2.5)
-        f = np.maximum(0, (r - 412.5) ** 2 - 60**2) / 12700
-        calls.append([{"r": r.tolist(), "f": f.tolist()}])
-    *found, one_sided = evaluated("table_field.js", "module.axisOf(...call)", calls)
-    assert found == pytest.approx([412.5] * 3, abs=0.1)
-    assert one_sided is None

@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 from time import process_time
 
+import numpy as np
 import pytest
 
 from mdr_core import InputError, Tabulated, read_curve, read_table
@@ -41,6 +42,7 @@ def test_tables_that_cannot_be_read_are_refused_with_the_line(file: str) -> None
         "h_c [nm];A_c [µm²]",
         "hc / nm;Ac / µm²",
         "hc [nm];A(hc) [µm2]",
+        "hc [nm];[µm²]",
         "Kontakttiefe [nm];Fläche [µm²]",
         "Profondeur (nm);Aire (µm²)",
     ],
@@ -50,10 +52,10 @@ def test_area_function_is_known_by_the_unit_or_the_name_of_the_area(heading: str
     rows = "".join(f"{10 * (i + 1)};{each}\n" for i, each in enumerate(area))
     table = parse(f"{heading}\n{rows}".encode(), PROFILE)
     assert [unit and unit[2] for _, unit, *_ in table.titles] == [1e-9, 1e-6]
-    assert table.taken == {1: "area", 0: "height"}
+    assert table.taken == {"area": [1], "height": [0]}
     radii = [(each / math.pi) ** 0.5 for each in area]
     assert table.values[0] == pytest.approx(radii, rel=1e-15, abs=0)
-    assert table.values[1] == [10.0, 20.0, 30.0]
+    assert table.values[1].tolist() == [10.0, 20.0, 30.0]
 
 
 @pytest.mark.parametrize(
@@ -66,7 +68,7 @@ def test_unit_that_contradicts_the_name_is_refused(heading: str, unit: str) -> N
 
 def test_argument_of_a_function_is_no_unit() -> None:
     table = parse(b"r [mm];f(r) [mm]\n0;0\n1;2\n2;8\n", PROFILE)
-    assert table.values == [[0.0, 1.0, 2.0], [0.0, 2.0, 8.0]]
+    assert np.array_equal(table.values, [[0.0, 1.0, 2.0], [0.0, 2.0, 8.0]])
 
 
 @pytest.mark.parametrize(
@@ -171,18 +173,14 @@ def test_headings_with_prefixes_and_powers_are_read_whole(
         ),
         ("Displacement (nm)\tLoad (mN)\tTime (s)", "0.1\t5\t0\n0.2\t6\t1", "nm mN"),
         ("Displacement Into Surface,Load On Sample,Time\nnm,mN,s", "0.1,5,0\n0.2,6,1", "nm mN"),
-        ("Calc_Ramp_Ex_nm Defl_nN_Ex", "0.1 5\n0.2 6", "nm nN"),
-        (
-            "# columns: time vDeflection tipSampleSeparation\n# units: s N m",
-            "0 5 0.1\n1 6 0.2",
-            "m N",
-        ),
+        ("Ind_nm Defl_nN_Ex", "0.1 5\n0.2 6", "nm nN"),
         ("Time,Extension,Load\n(s),(mm),(N)", '"0","0.1","5"\n"1","0.2","6"', "mm N"),
         ("Prüfzeit;Standardweg;Standardkraft\ns;mm;N", "0;0,1;5\n1;0,2;6", "mm N"),
         ("Time,Force,Stroke\nsec,N,mm", "0.0,5,0.1\n1.0,6,0.2", "mm N"),
         ("Force (g),Distance (mm)", "5,0.1\n6,0.2", "refused"),
         (";Kraft;Weg\n;N;mm", "a;5;0,1\nb;6;0,2", "mm N"),
         ("Depth [cm],Force [lbf]", "0.1,5\n0.2,6", "cm lbf"),
+        ("Depth (corrected) [nm];Load [mN] (raw)", "0.1;5\n0.2;6", "nm mN"),
     ],
 )
 def test_curves_as_instruments_export_them(
@@ -305,10 +303,10 @@ FILES = {
         (
             "# xPosition: 1.2e-5\n"
             "# k: 0.045 N/m\n"
-            "# columns: height vDeflection smoothedHeight\n"
+            "# columns: height vDeflection verticalTipPosition\n"
             "# units: m N m\n"
-            "0.1 5 0.1\n"
-            "0.2 6 0.2\n"
+            "0.1 5 -0.1\n"
+            "0.2 6 -0.2\n"
         ),
         "m N",
     ),
@@ -374,14 +372,14 @@ def test_measurement_data_above_a_table_are_no_rows_and_no_names(maker: str) -> 
     text, units = FILES[maker]
     kind = PROFILE if maker in {"profilometer", "AFM section"} else CURVE
     table = parse(text.encode(), kind)
-    assert [(table.titles[i].unit or ("", ""))[1] for i in table.taken] == units.split()
+    assert [(table.titles[i].unit or ("", ""))[1] for (i,) in table.taken.values()] == units.split()
     assert [values[-1] for values in table.values] == [0.2, 6.0]
     assert table.lines[-1] == text.count("\n")
 
 
 def test_first_point_with_whole_numbers_is_not_lost() -> None:
     table = parse(b"d;F\n0;0,5\n1;1\n", CURVE)
-    assert table.values == [[0.0, 1.0], [0.5, 1.0]]
+    assert np.array_equal(table.values, [[0.0, 1.0], [0.5, 1.0]])
 
 
 @pytest.mark.parametrize(
@@ -422,7 +420,7 @@ def test_file_of_four_megabytes_takes_linear_time() -> None:
 def test_times_are_in_seconds_and_need_a_unit(heading: str, unit: float | None) -> None:
     rows = "".join(f"{i};{i};{2 * i}\n" for i in range(3))
     table = parse(f"{heading};d [nm];F [mN]\n{rows}".encode(), CURVE)
-    assert table.time == (None if unit is None else [0.0, unit, 2 * unit])
+    assert table.time is None if unit is None else table.time.tolist() == [0.0, unit, 2 * unit]
     falling = f"{heading};d [nm];F [mN]\n{rows}{rows}"
     assert parse(falling.encode(), CURVE).time is None
 
@@ -442,3 +440,97 @@ def test_times_are_in_seconds_and_need_a_unit(heading: str, unit: float | None) 
 def test_column_of_segments_names_their_kinds(cells: list[str], kinds: list[str] | None) -> None:
     rows = "".join(f"{i};{2 * i};{cell}\n" for i, cell in enumerate(cells))
     assert parse(f"d [nm];F [mN];Part\n{rows}".encode(), CURVE).segments == kinds
+
+
+@pytest.mark.parametrize(
+    "heading",
+    [
+        "Tip-Sample Separation [nm];Vertical Deflection [pN]",
+        "tipSampleSeparation_nm;vDeflection_pN",
+        "Sep (nm);Force (pN)",
+        "Separation_nm_Ex;Defl_pN_Ex",
+        "Vertical Tip Position (smoothed) [nm];Vertical Deflection [pN]",
+        "Tip-surface distance/nm;F/pN",
+        "Gap [nm];Normal force [pN]",
+    ],
+)
+def test_separation_is_the_negative_of_the_depth(tmp_path: Path, heading: str) -> None:
+    file = tmp_path / "curve.csv"
+    file.write_text(f"{heading}\n50;0\n0;0\n-20;7\n", "utf-8")
+    curve = read_curve(file)
+    assert curve.is_reversed
+    assert curve.indentation_depth.tolist() == [-5e-8, 0, 2e-8]
+    assert curve.normal_force.tolist() == [0, 0, 7e-12]
+
+
+@pytest.mark.parametrize(
+    "heading",
+    [
+        "Height (measured) [nm];Vertical Deflection [pN]",
+        "Head Height (measured & smoothed);Vertical Deflection [pN]",
+        "smoothedStrainGaugeHeight [nm];vDeflection [pN]",
+        "Calc_Ramp_Ex_nm;Defl_pN_Ex",
+        "Height_Sensor_nm_Ex;Defl_pN_Ex",
+        "Defl_nm_Ex;Defl_pN_Ex",
+        "ZSnsr (nm);Force (pN)",
+        "Piezo (nm);Load (pN)",
+        "Z Scan (nm);Force (pN)",
+    ],
+)
+def test_position_of_a_cantilever_is_no_depth_unless_it_is_chosen(heading: str) -> None:
+    # A cantilever of 0.1 N/m that presses with 10 nN bends by 100 nm.
+    rows = "0;0\n10;5\n20;12\n"
+    with pytest.raises(InputError, match="Line 2: column 1 is a position or a deflection of"):
+        parse(f"{heading}\n{rows}".encode(), CURVE)
+    chosen = parse(f"{heading}\n{rows}".encode(), CURVE, [1, 2])
+    assert chosen.values[0].tolist() == [0, 10, 20]
+    named = f"d [nm];{heading.partition(';')[2]}\n{rows}"
+    assert np.array_equal(parse(named.encode(), CURVE).values, [[0, 10, 20], [0, 5, 12]])
+
+
+def test_columns_of_approach_and_retraction_are_two_segments(tmp_path: Path) -> None:
+    names = "Height_Sensor_nm_Ex Height_Sensor_nm_Rt Separation_nm_Rt Separation_nm_Ex"
+    file = tmp_path / "curve.txt"
+    file.write_text(f"{names} Defl_pN_Ex Defl_pN_Rt\n0 8 -3 5 0 9\n8 0 4 -2 9 1\n", "utf-8")
+    curve = read_curve(file)
+    assert curve.indentation_depth.tolist() == [-5e-9, 2e-9, 3e-9, -4e-9]
+    assert curve.normal_force.tolist() == [0, 9e-12, 9e-12, 1e-12]
+    assert curve.segments == ["loading", "loading", "unloading", "unloading"]
+    assert curve.time is None
+    # Of a force on both branches the depth of one leaves the other open.
+    file.write_text("d_nm_Ex Defl_pN_Ex Defl_pN_Rt\n0 0 9\n8 9 1\n", "utf-8")
+    with pytest.raises(InputError, match="Defl Ex and Defl Rt may each be the force"):
+        read_curve(file)
+
+
+def test_segments_named_in_comments_are_those_of_the_rows_beneath(tmp_path: Path) -> None:
+    columns = "# columns: tipSampleSeparation vDeflection seriesTime time\n# units: m N s s\n"
+    parts = {"extend": "5 0 1 1\n-2 9 2 2\n", "pause": "-3 9 3 1\n", "retract": "4 1 4 1\n"}
+    text = "\n".join(f"#\n# segment: {name}\n{columns}#\n{parts[name]}" for name in parts)
+    file = tmp_path / "curve.txt"
+    file.write_text(f"# TEXT EXPORT\n{text}", "utf-8")
+    curve = read_curve(file)
+    assert curve.indentation_depth.tolist() == [-5, 2, 3, -4]
+    assert curve.segments == ["loading", "loading", "hold", "unloading"]
+    # The time of the series, not that of each segment, which begins anew.
+    assert curve.time is not None
+    assert curve.time.tolist() == [0, 1, 2, 3]
+
+
+@pytest.mark.parametrize(
+    ("heading", "taken"),
+    [
+        ("Raw Displacement;Raw Load;Displacement Into Surface;Load On Sample", (2, 3)),
+        ("Displacement;Load;Displacement Into Surface;Load On Sample", (2, 3)),
+        ("RAW DEPTH;RAW LOAD;DEPTH;LOAD", (2, 3)),
+        ("Lateral force [N];Piezo [nm];Indentation [nm];Fz [N]", (2, 3)),
+        ("Lateral Deflection [N];Height [m];Tip Position [m];Vertical Deflection [N]", (2, 3)),
+        ("Fx, N;Position (x), mm;Position (z), mm;Fz, N", (2, 3)),
+        ("Sep (m);ZSnsr (m);Ind (m);Force (N)", (2, 3)),
+    ],
+)
+def test_corrected_columns_have_priority_over_raw_and_lateral_ones(
+    heading: str, taken: tuple[int, int]
+) -> None:
+    table = parse(f"{heading}\n1;2;3;4\n2;3;4;5\n".encode(), CURVE)
+    assert table.taken == {"depth": [taken[0]], "force": [taken[1]]}

@@ -1,5 +1,6 @@
 """A file over HTTP has the columns and lists of the core, and is else refused with its line."""
 
+import numpy as np
 import pytest
 
 from mdr_service.schemas.answers import TableAnswer
@@ -45,6 +46,44 @@ def test_columns_that_are_left_open_are_listed_and_can_be_chosen(client: Client)
         status, document = read(client, text, f"curve&columns={wrong}")
         assert (status, document["type"]) == (422, "urn:mdr:problem:invalid-request")
         assert document["errors"][0]["pointer"].startswith("/columns") or wrong in {"2,3", "5,9"}
+
+
+def test_reversed_sign_of_a_separation_is_noted(client: Client) -> None:
+    text = "Separation_nm_Ex Separation_nm_Rt Defl_nN_Ex Defl_nN_Rt\n5 -3 0 9\n-2 4 9 1\n"
+    status, document = read(client, text)
+    assert status == 200
+    TableAnswer.model_validate(document)
+    assert document["indentation_depth"] == [-5, 2, 3, -4]
+    assert (document["units"], document["lines"]) == (["nm", "nN"], [2, 3, 2, 3])
+    assert [each["quantity"] for each in document["columns"]] == [
+        "depth",
+        "depth",
+        "force",
+        "force",
+    ]
+    assert [(each["kind"], each["last"]) for each in document["segments"]] == [
+        *(("loading", 1), ("unloading", 3))
+    ]
+    falls = "is taken as the depth, with its sign reversed: it falls towards the sample."
+    assert document["notes"] == [
+        f"Column 1, “Separation Ex”, {falls}",
+        f"Column 2, “Separation Rt”, {falls}",
+        "Column 3, “Defl Ex”, is taken as the force.",
+        "Column 4, “Defl Rt”, is taken as the force.",
+    ]
+
+
+def test_axis_of_a_worn_ball_is_found_in_any_window_about_it(client: Client) -> None:
+    axes = []
+    for first, last in ((0, 825), (0, 700), (150, 600), (412.5, 800)):
+        r = np.arange(first, last, 2.5)
+        f = np.maximum(0, (r - 412.5) ** 2 - 60**2) / 12700
+        text = "\n".join(f"{x:.17g} {y:.17g}" for x, y in zip(r, f, strict=True))
+        axes.append(read(client, f"r_um f_um\n{text}\n", "profile")[1]["axis"])
+    assert axes[:3] == pytest.approx([412.5] * 3, abs=0.1)
+    assert axes[3] is None
+    for points in ("1 2", "1 2\n1 3"):
+        assert read(client, f"r f\n{points}\n", "profile")[1]["axis"] is None
 
 
 def test_profile_without_a_heading_names_no_unit(client: Client) -> None:

@@ -27,6 +27,8 @@ _NEAR: Final = 1e-2
 _FINEST_STEP, _MOST_UNITS = 0.05, round(1 / (np.sqrt(12) * _EXACT))
 # Smallest error of a rounded height, over that of most.
 _LEAST_ERROR: Final = 1e-2
+# Windows about the axis of a scan, each about the axis in the one before.
+_WINDOWS: Final = 8
 # Distance of a scan's axis from r = 0 that is reported, over the last radius.
 _OFF_AXIS: Final = 0.02
 
@@ -81,13 +83,28 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
 
 def off_axis(r: Array, f: Array) -> str:
     """Return what to do with positions of a scan that are not measured from the axis, else ""."""
-    end = np.abs(r).max()
-    bend, slope, _ = np.linalg.lstsq(np.vander(r / end, 3), f)[0]
-    axis = -end * slope / (2 * bend) if bend else 0.0
-    if not r.min() < axis < r.max() or abs(axis) < _OFF_AXIS * end:
+    axis, bend = axis_of(r, f)
+    if axis is None or abs(axis) < _OFF_AXIS * np.abs(r).max():
         return ""
     reverse = "" if bend > 0 else ", and reverse the sign of the heights"
     return f"if r is the position on a scan, subtract that of the axis, near {axis:.4g}{reverse}"
+
+
+def axis_of(r: Array, f: Array) -> tuple[float | None, float]:
+    """Return the axis of a scan and the bend there; None if the points lie on one side of it.
+
+    It is that of the parabola through the points that reach equally far on both sides of it.
+    """
+    first, last = r.min(), r.max()
+    axis, bend = (first + last) / 2, 0.0
+    for _ in range(_WINDOWS):
+        half = min(axis - first, last - axis)
+        if not half > 0:
+            return None, bend
+        inside = np.abs(r - axis) <= half
+        bend, slope, _ = np.linalg.lstsq(np.vander((r[inside] - axis) / half, 3), f[inside])[0]
+        axis -= half * (slope / bend) / 2 if bend else np.inf
+    return (float(axis) if first < axis < last else None), bend
 
 
 def _rounding(values: Array, coarsest: float) -> float:

@@ -17,27 +17,6 @@ function areaText(coefficients, least, most, unit) {
   return [`h [${unit}], A [${unit}²]`, ...heights.map((h) => `${h}, ${area(h)}`)].join("\n");
 }
 
-/** Return the axis of a scan: that of the parabola through the points on both sides of it. */
-export function axisOf({ r, f }) {
-  const [first, last] = [Math.min(...r), Math.max(...r)];
-  let axis = (first + last) / 2;
-  for (let half = last - first, i = 0; i < 8; i++, half = Math.min(axis - first, last - axis)) {
-    const inside = r.map((x, j) => [x - axis, f[j]]).filter(([u]) => Math.abs(u) <= half);
-    const mean = (of) => inside.reduce((sum, point) => sum + of(point), 0) / inside.length;
-    const [m, square, height] = [mean(([u]) => u), mean(([u]) => u * u), mean(([, y]) => y)];
-    const a = mean(([u]) => (u - m) ** 2);
-    const b = mean(([u]) => (u - m) * (u * u - square));
-    const c = mean(([u]) => (u * u - square) ** 2);
-    const [p, q] = [mean(([u, y]) => (u - m) * (y - height)), mean(([u, y]) => (u * u - square) * (y - height))];
-    // Slope and curvature of the least squares.
-    const step = -(p * c - q * b) / (2 * (q * a - p * b));
-    // A scan of one side, which has no axis within it.
-    if (!(axis + step > first && axis + step < last)) return NaN;
-    axis += step;
-  }
-  return axis;
-}
-
 /**
  * Return the field in an element for tables of a kind (`PROFILE`, `CURVE`), with `show(table,
  * unreadable, heads)`, names of its columns. `change(table)` is called with a table that is read, else `fail()`.
@@ -57,10 +36,10 @@ export function tableField(root, kind, { change, fail }) {
   const textOf = ({ r, f, units }) =>
     [heads.map((head, i) => `${head} [${units[i]}]`).join(", "), ...r.map((x, i) => `${x}, ${f[i]}`)].join("\n");
 
-  const describe = ({ r, named, ofAreas }) => {
-    const units = named?.every(Boolean) ? "; units from the heading" : "";
-    const areas = ofAreas ? "; r = √(A/π) from the areas" : "";
-    part(".count").textContent = `${r.length} points${areas}${named ? units : ""}.`;
+  const describe = ({ r, notes = [] }) => {
+    // The notes name the columns of a curve over depth, not those of a loop.
+    const said = heads[0] === kind.heads[0] ? notes : [];
+    part(".count").textContent = [`${r.length} points.`, ...said].join(" ");
   };
 
   const give = (table) => {
@@ -72,7 +51,7 @@ export function tableField(root, kind, { change, fail }) {
   const rewrite = (table) => {
     part(".columns").replaceChildren();
     text.value = textOf(table);
-    give({ ...table, named: undefined, lines: undefined });
+    give({ ...table, notes: undefined, lines: undefined });
   };
   /** Offer the columns of a file `[number, name]`, those that are `taken` as chosen. */
   const offerColumns = (content, columns, taken) => {
@@ -84,7 +63,7 @@ export function tableField(root, kind, { change, fail }) {
     });
     const chosen = () => choices.map(([, choice]) => choice.value);
     for (const [, choice] of choices) choice.addEventListener("change", () => chosen().every(Boolean) && read(content, chosen()));
-    part(".columns").replaceChildren(...(columns.length > 2 ? choices.map(([label]) => label) : []));
+    part(".columns").replaceChildren(...(columns.length > 2 || !taken.length ? choices.map(([label]) => label) : []));
   };
   const read = async (content = text.value, columns = undefined) => {
     given = [content, columns];
@@ -105,7 +84,7 @@ export function tableField(root, kind, { change, fail }) {
       const open = heads.filter((_, i) => !units[i]);
       if (open.length) throw new Error(`no heading names the unit of ${open.join(" and ")}: choose it`);
       offerThinning({ ...table, units });
-      give({ ...table, units, named });
+      give({ ...table, units });
     } catch (error) {
       shown = null;
       mark(root, error.message);
@@ -144,10 +123,10 @@ export function tableField(root, kind, { change, fail }) {
     const drift = shown.drift && [-shown.drift[0], shown.drift[1]];
     rewrite({ ...shown, segments, drift, [kind.reversed]: shown[kind.reversed].map((x) => 0 - x) });
   });
-  part(".centre")?.addEventListener("click", () => {
+  part(".centre")?.addEventListener("click", async () => {
     if (!shown) return;
-    const axis = axisOf(shown);
-    if (Number.isNaN(axis)) mark(root, "the points lie on one side of their axis");
+    const { axis } = await readTable(textOf(shown), kind);
+    if (axis === null) mark(root, "the points lie on one side of their axis");
     else rewrite({ ...shown, r: shown.r.map((x) => Number((x - axis).toPrecision(12))) });
   });
   part("[type=file]").addEventListener("change", async ({ target }) => {

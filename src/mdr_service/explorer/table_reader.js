@@ -12,9 +12,8 @@ export const CURVE = {
 };
 
 /**
- * Return the table that a text or the bytes of a file hold: `r` and `f` as written, or r = √(A/π)
- * if `ofAreas`, `units` of both where a heading names them, else null, the number of each of its
- * `lines`, its `segments`, the `times` of its points, the `drift` of its depths per second with its
+ * Return the table that a text or the bytes of a file hold: `r` and `f`, `units` of both where a
+ * heading names them, else null, `notes` on the columns, the `axis` of a profile, the number of each of its `lines`, its `segments`, the `times` of its points, the `drift` of its depths per second with its
  * standard error, its `columns`, pairs of number and name, and those that are `taken`.
  * `chosen` are two of the numbers. An error names the line, and has the `columns` that are in doubt.
  */
@@ -32,11 +31,11 @@ export async function readTable(content, kind, chosen) {
   const [r, f] = kind.lists.map((name, i) =>
     offered(answer.units[i], i) ? answer[name] : answer[name].map((x) => Number((x * answer.scales[i]).toPrecision(15))));
   const units = answer.units.map((unit, i) => (offered(unit, i) ? unit : Object.keys(kind.units[i])[0]));
-  const { lines, segments, columns, time: times } = answer;
+  const { lines, segments, columns, notes, axis, time: times } = answer;
   const scale = offered(answer.units[0], 0) ? 1 : answer.scales[0];
   const drift = answer.drift_rate && [...answer.drift_rate, ...answer.drift_rate_error].map((x) => x * scale);
   return {
-    r, f, units, lines, segments, times, drift, ofAreas: columns.some(({ quantity }) => quantity === "area"),
+    r, f, units, lines, segments, times, drift, notes, axis,
     columns: columns.map(({ name, unit }, i) => [String(i + 1), unit ? `${name} [${unit}]` : name]),
     taken: kind.quantities.map((names) => String(columns.findIndex(({ quantity }) => names.includes(quantity)) + 1)),
   };

@@ -539,6 +539,8 @@ class TableAnswer(Answer):
     """Radii of a profile."""
     f: list[float] = ABSENT
     """Heights of a profile."""
+    axis: float | None = ABSENT
+    """Radius of the axis of a profile, null if the points lie on one side of it."""
     indentation_depth: list[float] = ABSENT
     """Depths of a curve."""
     normal_force: list[float] = ABSENT
@@ -550,9 +552,9 @@ class TableAnswer(Answer):
     lines: list[int]
     """Line of each point in the file, from 1."""
     notes: list[str]
-    """Which columns are taken."""
+    """Which columns are taken, and which with the sign reversed."""
     segments: list[TableSegment] = ABSENT
-    """Segments of a curve, by a column that names them, else by the direction of the depth."""
+    """Segments of a curve, if the file names them, else by the direction of the depth."""
     time: list[float] = ABSENT
     """Times of a curve from its first point in seconds, if a column has a unit of time."""
     drift_rate: list[float] = ABSENT
