@@ -121,19 +121,18 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
         reason = "infinite under any load, or not determined by the points of a table"
         raise InputError(path, f"is {reason}: give another load, or a profile that is smooth")
     end = np.minimum(infinite, profile.domain)
-    # The search of a profile without an end begins at its own scale; `last` is then any contact.
-    anywhere = 2 * profile.first_radius + 1.0
-    last = profile.coordinate_from_radius(where(end < inf, end * (1 - ADJACENT), anywhere))
-    middle = last / 2 if some(end < inf) else number(1.0) * profile.scale
-    beyond = (end < inf) & (target > largest_stress(profile, last, last > 0))
-    require_inside(path, beyond & (end == profile.domain), profile)
-    if some(beyond):
-        detail = f"no contact has it: at radius {extremes(infinite)[0]:.12g} it is infinite"
-        raise InputError((*path, *first_index(beyond)), detail, beyond)
-    largest = where(end < inf, last, _FARTHEST)
-    start, low, high = (full(each, target) for each in (middle, 0.0, largest))
-    sloped = partial(pressure_and_slope, profile)
-    return invert(sloped, target, start, low, high)
+    start, high = full(profile.scale, target), full(_FARTHEST, target)
+    if some(end < inf):
+        # Any contact stands for the last one of a case without an end.
+        last = where(end < inf, end * (1 - ADJACENT), profile.scale)
+        last = full(profile.coordinate_from_radius(last), target)
+        beyond = (end < inf) & (target > largest_stress(profile, last, last > 0))
+        require_inside(path, beyond & (end == profile.domain), profile)
+        if some(beyond):
+            detail = f"no contact has it: at radius {extremes(infinite)[0]:.12g} it is infinite"
+            raise InputError((*path, *first_index(beyond)), detail, beyond)
+        start, high = last / 2, where(end < inf, last, high)
+    return invert(partial(pressure_and_slope, profile), target, start, full(0.0, target), high)
 
 
 def largest_with(profile: Profile, edge: Array, loaded: Flags, added: _Field) -> Array:
