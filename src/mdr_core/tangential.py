@@ -200,11 +200,23 @@ class TangentialContact(SlippingContact):
     def _limit_rounding(self) -> Parameter:
         """Relative error of results due to the rounding of the load at full slip [1].
 
-        A load that equals the full-slip load in double precision is in full slip.
+        It is `limit_error` times the largest condition number of the results. A load that equals
+        the full-slip load in double precision is in full slip.
         """
         if self.control == "stick_radius":
             return 0.0
-        return self.limit_error * self._load_condition
+        of_force, (size, limit) = self.control == "tangential_force", self._load_and_limit
+        partial = (limit > 0) & ~self.full_slip
+        ratio = where(partial, quotient(size, limit), 0.0)
+        ends = self._coordinate, self.stick_coordinate
+        condition = conditioning.near_full_slip(
+            self.normal.profile, ends, ratio, partial, force_prescribed=of_force
+        )
+        if some(self.excess > 0):
+            # The displacement beyond full slip adds to the condition of the dissipated energy.
+            share = quotient(self.limiting_force * size, self.dissipated_energy)
+            condition = condition + where(self.excess > 0, share, 0.0)
+        return self.limit_error * condition
 
     @property
     def step_error(self) -> Array:
@@ -252,22 +264,6 @@ class TangentialContact(SlippingContact):
         if self.control == "tangential_force":
             return np.abs(self.tangential_force), self.limiting_force
         return np.abs(self.tangential_displacement), self._full_slip_displacement
-
-    @property
-    def _load_condition(self) -> Parameter:
-        """Largest relative condition number of the results with respect to each load [1]."""
-        force_prescribed, (size, limit) = self.control == "tangential_force", self._load_and_limit
-        profile, partial = self.normal.profile, (limit > 0) & ~self.full_slip
-        ratio = where(partial, quotient(size, limit), 0.0)
-        ends = self._coordinate, self.stick_coordinate
-        condition = conditioning.near_full_slip(
-            profile, ends, ratio, partial, force_prescribed=force_prescribed
-        )
-        if force_prescribed or not some(self.excess > 0):
-            return condition
-        # The displacement beyond full slip adds to the condition number of the dissipated energy.
-        share = quotient(self.limiting_force * size, self.dissipated_energy)
-        return condition + where(self.excess > 0, share, 0.0)
 
 
 def solve(
@@ -325,10 +321,8 @@ def solve(
     else:
         zone = _by_load(contact, *parameters, name, given)
     edge, width, sign, full_slip, excess = zone
-    edge, width = broadcast(edge, shape), broadcast(width, shape)
-    result = TangentialContact(
-        contact, *parameters, edge, width, sign, full_slip, excess, control=name
-    )
+    ends = broadcast(edge, shape), broadcast(width, shape)
+    result = TangentialContact(contact, *parameters, *ends, sign, full_slip, excess, control=name)
     if given.shape == shape:
         # The prescribed load is returned bit-identical.
         vars(result)[name] = given

@@ -250,11 +250,10 @@ def _groups(profile: Profile, edge: Array, shape: tuple[int, ...]) -> Iterator[_
     loaded = np.flatnonzero(edge > 0)
     if profile.swept:
         names = profile.parameters
-        columns = [np.broadcast_to(value, shape).ravel() for value in names.values()]
+        columns = {name: np.broadcast_to(names[name], shape).ravel() for name in profile.swept}
         for case in loaded:
-            own = dict(zip(names, (float(column[case]) for column in columns), strict=True))
-            alone = np.array([case]), np.array([0])
-            yield profile.with_parameters(own), edge[alone[0]], *alone
+            own = {name: float(column[case]) for name, column in columns.items()}
+            yield profile.with_parameters(own), edge[[case]], np.array([case]), np.array([0])
         return
     contacts, place = np.unique(edge[loaded], return_inverse=True)
     order = np.argsort(place, kind="stable")
