@@ -26,7 +26,7 @@ from scipy.optimize.elementwise import find_root
 
 from mdr_core import materials, validation
 from mdr_core.doubles import EPS, ROUNDING
-from mdr_core.elementwise import full, number, some, where
+from mdr_core.elementwise import full, number, quotient, some, where
 from mdr_core.equivalent_1d import coordinate_from_radius
 from mdr_core.errors import InputError, Notice
 from mdr_core.extrema import LEAST_GAP, largest_with
@@ -304,7 +304,7 @@ class AdhesiveContact(NormalContact):
         """
         change = 3 * self.profile.steepness * self.edge_errors
         stable = self._excess("indentation_depth")
-        near = where(stable > 0, 1 / where(stable > 0, stable, 1.0), 0.0)
+        near = quotient(1.0, stable)
         own = (self.reference.error_estimates + change) * (2 + near)
         return own + near * self._slope_error
 

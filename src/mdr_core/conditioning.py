@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from mdr_core.doubles import ADJACENT, EPS, ROUNDING, TINY
-from mdr_core.elementwise import full, some, where
+from mdr_core.elementwise import full, quotient, some, where
 from mdr_core.equivalent_1d import NARROW, stick_edge
 from mdr_core.normal import NormalContact
 from mdr_core.profiles import Profile
@@ -70,7 +70,7 @@ def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
     contact of each, or the one of all.
     """
     partial = (limit > 0) & (size < limit)
-    ratio = np.where(partial, size / np.where(limit > 0, limit, 1.0), 0.0)
+    ratio = np.where(partial, quotient(size, limit), 0.0)
     worst = np.argmax(ratio)
     if not ratio[worst] > 1 - NARROW:
         return 0.0
@@ -102,8 +102,7 @@ def of_sliding(
 
 def narrow_annulus(coordinate: Array, width: Array) -> Array:
     """Return the condition number 3 a/(a - c) of each annulus between two edges [1]."""
-    slips = width > 0
-    return where(slips, 3 * coordinate / where(slips, width, 1.0), 0.0)
+    return quotient(3 * coordinate, width)
 
 
 def of_edge_slope(contact: NormalContact) -> Array:

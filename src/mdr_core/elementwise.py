@@ -52,6 +52,12 @@ def where(condition: Any, this: Any, other: Any) -> Any:
     return np.where(condition, this, other)
 
 
+def quotient(part: Any, whole: Any, other: Any = 0.0) -> Any:
+    """Return part/whole where the whole is positive, else `other`."""
+    positive = whole > 0
+    return where(positive, part / where(positive, whole, 1.0), other)
+
+
 def piecewise(
     place: Any, start: Any, below: Callable[[Any], Any], beyond: Callable[[Any], Any]
 ) -> Any:

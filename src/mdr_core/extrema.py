@@ -137,7 +137,7 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
         raise InputError(path, f"is {reason}: give another load, or a profile that is smooth")
     end = np.minimum(infinite, profile.domain)
     farthest = where(end < inf, end * (1 - ADJACENT), _FARTHEST)
-    last = profile.coordinate_from_radius(farthest)
+    last = full(profile.coordinate_from_radius(farthest), target)
     # The largest pressure is at least the mean pressure.
     beyond = ~(target <= profile.reduced_force(last) / (np.pi * farthest * farthest))
     if some(beyond):
@@ -153,9 +153,8 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
         raise InputError((*path, *index), f"no contact has it: {cause}", beyond)
     # The search of a profile without an end begins at its own scale.
     middle = where(end < inf, last / 2, profile.scale)
-    start, low, high = (full(each, target) for each in (middle, 0.0, last))
-    sloped = partial(pressure_and_slope, profile)
-    return invert(sloped, target, start, low, high)
+    start, low = (full(each, target) for each in (middle, 0.0))
+    return invert(partial(pressure_and_slope, profile), target, start, low, last)
 
 
 def largest_with(profile: Profile, edge: Array, loaded: Flags, added: _Field) -> Array:

@@ -1,4 +1,4 @@
-"""Estimated errors of the half-space approximation: bodies of finite size, slopes, side walls.
+"""Estimated errors of the flat model: bodies of finite size, slopes, radial displacement, walls.
 
 Source: hay; dimitriadis; notes, §8.
 """
@@ -60,7 +60,7 @@ class LoadedContact(Protocol):
 
 
 class Errors(NamedTuple):
-    """Estimated relative errors of each load by the half-space approximation [1]."""
+    """Estimated relative errors of each load by a flat half-space or layer as the model [1]."""
 
     parts: tuple[Array, ...]
     """Parts of the error of the force at a given depth, which exceeds the error of the depth under
@@ -87,8 +87,8 @@ def errors(contact: LoadedContact) -> Errors:
     if contact.profile.body_radii is not None:
         return _of_round_bodies(contact, beta)
     slope = _edge_slope(contact)
-    wall = _wall_error(contact)
-    return Errors((0 * slope, _RADIAL * beta * slope, slope * slope, wall + 0 * slope), slope)
+    radial = _RADIAL * beta * slope + _on_layer(contact)
+    return Errors((0 * slope, radial, slope * slope, _wall_error(contact) + 0 * slope), slope)
 
 
 def _of_round_bodies(contact: LoadedContact, beta: float) -> Errors:
@@ -114,7 +114,8 @@ def _of_round_bodies(contact: LoadedContact, beta: float) -> Errors:
         size, mean = k1 * s1 * x1 + k2 * s2 * x2, s1 * x1 + s2 * x2
         largest, steepest = np.maximum(x1 * s2, x2 * s1), np.maximum(x1, x2)
         common = abs(x1 * s2 + sign * x2 * s1)
-        force = size + size**2, _RADIAL_ROUND * beta * common, 0.1 * common**2, 0.0 * size
+        radial = _RADIAL_ROUND * beta * common + _on_layer(contact)
+        force = size + size**2, radial, 0.1 * common**2, 0.0 * size
         radius = 0.015 * mean + 0.1 * beta * largest + 0.05 * steepest**2
         pressure = 0.04 * mean + 0.3 * beta * largest + 0.4 * common**2
         found.append((*force, steepest, radius, pressure))
@@ -175,12 +176,14 @@ def stiffening(tolerance: float, material: Material) -> float:
     return float((np.sqrt(1 + 4 * tolerance) - 1) / (2 * _base(material)))
 
 
-def on_layer(contact: LoadedContact, layer: Layer) -> Array:
-    """Relative error of the force on a layer by the neglected radial displacement [1].
+def _on_layer(contact: LoadedContact) -> Parameter:
+    """Relative error of the force by the radial displacement of a layer, 0 without one [1].
 
     Over the slope at the edge it is 0.3 (a/h)^2 on thin bonded incompressible layers, and far less
     on compressible ones. Source: manual, Contact with a layer, finite elements.
     """
+    if (layer := contact.material.layer) is None:
+        return 0.0
     part = contact.contact_radius / layer.thickness
     nu = ASSUMED_RATIO if layer.poissons_ratio is None else max(layer.poissons_ratio, 0.0)
     bent = _SQUEEZED * part**2 / (1 + _LEVELS * part**2)

@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Final, Self
+from typing import Any, ClassVar, Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core import half_space, materials, validity
 from mdr_core.doubles import ADJACENT, LARGEST, ROUNDING
-from mdr_core.elementwise import broadcast, where
+from mdr_core.elementwise import broadcast, quotient, where
 from mdr_core.equivalent_1d import coordinate_from_radius
 from mdr_core.extrema import coordinate_from_pressure, largest_stress, pressure_and_slope
 from mdr_core.materials import UNKNOWN, Material
@@ -85,7 +85,7 @@ class NormalContact(validity.ResultsOverLoads):
         if extremes(area)[0] > 0:
             return self.normal_force / area
         limit = np.multiply(self.e_star, self.profile.tip_pressure)
-        return where(area > 0, self.normal_force / where(area > 0, area, 1.0), limit)
+        return quotient(self.normal_force, area, limit)
 
     @cached_property
     def maximum_pressure(self) -> Array:
@@ -131,10 +131,7 @@ class NormalContact(validity.ResultsOverLoads):
             parts = (of_depth, depth), (of_moment, half_force)
         else:
             parts = (of_integral, half_force), (of_integral, self.contact_radius * depth)
-        errors = [
-            where(whole > 0, part / where(whole > 0, whole, 1.0), 0.0) for part, whole in parts
-        ]
-        return np.maximum(*errors)
+        return np.maximum(*(quotient(part, whole) for part, whole in parts))
 
     @cached_property
     def pressure_data_error(self) -> Array | None:
@@ -206,13 +203,22 @@ class NormalContact(validity.ResultsOverLoads):
         is_exact = not self.profile.flattens and self.control != "maximum_pressure"
         return ROUNDING if is_exact else self.error_estimates
 
+    def width_outside(self, radius: Array) -> Array:
+        """a - r of radii r up to a [length], also where the rounding of a exceeds it."""
+        a = self.contact_radius
+        if self.control == "contact_radius" or self.profile.is_flat_punch:
+            return a - radius
+        # The contact coordinate of a computed edge is accurate; its radius may not be.
+        beyond = self.coordinate - (radius - self.profile.first_radius)
+        return where(radius < a, np.maximum(beyond, 0.0), 0.0)
+
     @property
     def findings(self) -> list[validity.Finding]:
         """Findings that depend only on the profile and the loads."""
         sharp = "mean_pressure is infinite at zero load: the tip is sharper than a cone"
         infinite = "maximum_pressure is infinite, at radius {}"
         found = [
-            validity.Finding("singular", np.isinf(self.mean_pressure), lambda: sharp),
+            validity.Finding("singular", np.isinf(self.mean_pressure), sharp.format),
             validity.infinite_pressure(self, "singular", infinite),
         ]
         if self.material.layer is not None:
@@ -221,6 +227,21 @@ class NormalContact(validity.ResultsOverLoads):
             of_table = [validity.tip(self, self.profile), validity.smoothed(self, self.profile)]
             return [validity.table_end(self), *of_table, *found]
         return found
+
+
+class SlippingContact(validity.ResultsOverLoads):
+    """Results of a normal contact under a further load, from whose edge slip spreads inwards."""
+
+    normal: NormalContact
+
+    def computed(self) -> dict[str, Any]:
+        """Return the quantities by name, with the quantities of the normal contact."""
+        return self.normal.computed() | super().computed()
+
+    @property
+    def slips_from(self: Any) -> Array:
+        """Least radius with slip [length]; infinite without slip."""
+        return where(self.slip_width > 0, self.stick_radius, np.inf)
 
 
 def solve(

@@ -8,13 +8,13 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mdr_core import conditioning, equivalent_1d, materials, validity
+from mdr_core import conditioning, equivalent_1d, materials
 from mdr_core.doubles import EPS, ROUNDING
-from mdr_core.elementwise import broadcast, number, some, where
+from mdr_core.elementwise import broadcast, number, quotient, some, where
 from mdr_core.extrema import largest_stress
 from mdr_core.interval_moments import interval_moments
 from mdr_core.materials import Material
-from mdr_core.normal import NormalContact
+from mdr_core.normal import NormalContact, SlippingContact
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import (
@@ -44,7 +44,7 @@ _Step = Callable[[Profile, Array, Array, Array], Array]
 
 
 @dataclass(frozen=True, repr=False)
-class TangentialContact(validity.ResultsOverLoads):
+class TangentialContact(SlippingContact):
     """Normal contact under a tangential load, at any number of pairs of loads.
 
     Results are arrays over the broadcast loads. Each is computed on first use.
@@ -74,10 +74,6 @@ class TangentialContact(validity.ResultsOverLoads):
         "dissipated_energy",
         "regime",
     )
-
-    def computed(self) -> dict[str, Any]:
-        """Return the quantities by name, with the quantities of the normal contact."""
-        return self.normal.computed() | super().computed()
 
     @cached_property
     def _coordinate(self) -> Array:
@@ -204,11 +200,23 @@ class TangentialContact(validity.ResultsOverLoads):
     def _limit_rounding(self) -> Parameter:
         """Relative error of results due to the rounding of the load at full slip [1].
 
-        A load that equals the full-slip load in double precision is in full slip.
+        It is `limit_error` times the largest condition number of the results. A load that equals
+        the full-slip load in double precision is in full slip.
         """
         if self.control == "stick_radius":
             return 0.0
-        return self.limit_error * self._load_condition
+        of_force, (size, limit) = self.control == "tangential_force", self._load_and_limit
+        partial = (limit > 0) & ~self.full_slip
+        ratio = where(partial, quotient(size, limit), 0.0)
+        ends = self._coordinate, self.stick_coordinate
+        condition = conditioning.near_full_slip(
+            self.normal.profile, ends, ratio, partial, force_prescribed=of_force
+        )
+        if some(self.excess > 0):
+            # The displacement beyond full slip adds to the condition of the dissipated energy.
+            share = quotient(self.limiting_force * size, self.dissipated_energy)
+            condition = condition + where(self.excess > 0, share, 0.0)
+        return self.limit_error * condition
 
     @property
     def step_error(self) -> Array:
@@ -243,7 +251,7 @@ class TangentialContact(validity.ResultsOverLoads):
             return _LIMIT_ERROR
         # The product mu F_N is rounded by half a unit in its last place.
         limit = self.limiting_force
-        return np.spacing(limit) / where(limit > 0, 2 * limit, 1.0)
+        return quotient(np.spacing(limit), 2 * limit)
 
     @cached_property
     def error_estimates(self) -> Array:
@@ -256,27 +264,6 @@ class TangentialContact(validity.ResultsOverLoads):
         if self.control == "tangential_force":
             return np.abs(self.tangential_force), self.limiting_force
         return np.abs(self.tangential_displacement), self._full_slip_displacement
-
-    @property
-    def _load_condition(self) -> Parameter:
-        """Largest relative condition number of the results with respect to each load [1]."""
-        force_prescribed, (size, limit) = self.control == "tangential_force", self._load_and_limit
-        profile, partial = self.normal.profile, (limit > 0) & ~self.full_slip
-        ratio = where(partial, size / where(limit > 0, limit, 1.0), 0.0)
-        ends = self._coordinate, self.stick_coordinate
-        condition = conditioning.near_full_slip(
-            profile, ends, ratio, partial, force_prescribed=force_prescribed
-        )
-        if force_prescribed or not some(self.excess > 0):
-            return condition
-        # The displacement beyond full slip adds to the condition number of the dissipated energy.
-        energy = where(self.dissipated_energy > 0, self.dissipated_energy, 1.0)
-        return condition + where(self.excess > 0, self.limiting_force * size / energy, 0.0)
-
-    @property
-    def slips_from(self) -> Array:
-        """Least radius with slip [length]; infinite without slip."""
-        return where(self.full_slip | (self.slip_width > 0), self.stick_radius, np.inf)
 
 
 def solve(
@@ -334,10 +321,8 @@ def solve(
     else:
         zone = _by_load(contact, *parameters, name, given)
     edge, width, sign, full_slip, excess = zone
-    edge, width = broadcast(edge, shape), broadcast(width, shape)
-    result = TangentialContact(
-        contact, *parameters, edge, width, sign, full_slip, excess, control=name
-    )
+    ends = broadcast(edge, shape), broadcast(width, shape)
+    result = TangentialContact(contact, *parameters, *ends, sign, full_slip, excess, control=name)
     if given.shape == shape:
         # The prescribed load is returned bit-identical.
         vars(result)[name] = given
@@ -395,13 +380,7 @@ def _by_radius(contact: NormalContact, radius: Array) -> _StickZone:
     if profile.is_flat_punch:
         return 0 * radius, contact.coordinate + 0 * radius, *slip
     c = np.maximum(radius, innermost)
-    edge = profile.coordinate_from_radius(c)
-    if contact.control == "contact_radius":
-        width = a - c
-    else:
-        # The contact coordinate of a computed edge is accurate; its radius may not be.
-        width = where(c < a, np.maximum(contact.coordinate - edge, 0.0), 0.0)
-    return edge, width, *slip
+    return profile.coordinate_from_radius(c), contact.width_outside(c), *slip
 
 
 def slip_moment(profile: Profile, coordinate: Array, width: Array, stick: Array) -> Array:

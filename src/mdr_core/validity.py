@@ -16,7 +16,7 @@ from typing import Any, ClassVar, Final, NamedTuple, Protocol
 import numpy as np
 
 from mdr_core import half_space
-from mdr_core.elementwise import full, number, some, where
+from mdr_core.elementwise import full, number, quotient, some
 from mdr_core.errors import Notice, Remedy
 from mdr_core.half_space import ASSUMED_RATIO, LoadedContact
 from mdr_core.materials import Layer
@@ -70,7 +70,8 @@ class Finding(NamedTuple):
 
     code: str
     where: Flags
-    message: Callable[[], str]
+    message: Callable[[Any], str]
+    """Sentence about the largest size, such as `format` of a text with braces for it."""
     value: Parameter | None = None
     """Size in each case; see `Notice`."""
     limit: float | None = None
@@ -78,7 +79,7 @@ class Finding(NamedTuple):
 
 
 def _above_limit(
-    code: str, size: Array, message: Callable[[], str], instead: Remedy | None = None
+    code: str, size: Array, message: Callable[[float], str], instead: Remedy | None = None
 ) -> Finding:
     """Return the finding of the cases whose size is above the limit of a code."""
     limit = _LIMITS[code]
@@ -181,11 +182,12 @@ def sources_of(*names: str) -> tuple[str, ...]:
 
 def notices(findings: Iterable[Finding]) -> list[Notice]:
     """Return a warning for each finding that holds in some case."""
-    return [
-        Notice(code, message(), None if value is None else extremes(value)[1], limit, instead)
-        for code, where, message, value, limit, instead in findings
-        if some(where)
-    ]
+    found = []
+    for code, where, message, value, limit, instead in findings:
+        if some(where):
+            size = None if value is None else extremes(value)[1]
+            found.append(Notice(code, message(size), size, limit, instead))
+    return found
 
 
 def model_error(contact: SolvedContact) -> Array:
@@ -205,8 +207,6 @@ def model_error(contact: SolvedContact) -> Array:
     is_socket = any(map(half_space.is_concave, contact.normal.profile.body_radii or ()))
     counted = 0.0 if is_socket else errors.parts[0]
     error = errors.force + np.maximum(layer - counted, 0.0)
-    if material.layer is not None:
-        error = error + half_space.on_layer(contact.normal, material.layer)
     if contact.g_star is not None:
         beta = material.dundurs_beta or 0.0
         ratio = half_space.largest_ratio(material)
@@ -232,40 +232,33 @@ def findings(contact: SolvedContact) -> list[Finding]:
 
 def inaccurate(error: Parameter, limit: float = ACCURACY) -> Finding:
     """Return `accuracy`: error estimates above a limit."""
-
-    def message() -> str:
-        largest = extremes(error)[1]
-        return f"error_estimate is {largest:.2g}, above {limit:g}: results have fewer digits here"
-
-    return Finding("accuracy", np.asarray(error) > limit, message, error, limit)
+    text = f"error_estimate is {{:.2g}}, above {limit:g}: results have fewer digits here"
+    return Finding("accuracy", np.asarray(error) > limit, text.format, error, limit)
 
 
 def table_end(contact: LoadedContact) -> Finding:
     """Return `table_end`: contacts that come near the last radius of a table."""
     part = contact.contact_radius / contact.profile.domain
-
-    def message() -> str:
-        return (
-            f"the contact reaches {extremes(part)[1]:.3f} of the table's last radius: "
-            "extend the table beyond the contact edge"
-        )
-
-    return _above_limit("table_end", part, message, "longer_table")
+    text = (
+        "the contact reaches {:.3f} of the table's last radius: extend the table beyond the "
+        "contact edge"
+    )
+    return _above_limit("table_end", part, text.format, "longer_table")
 
 
 def smoothed(contact: LoadedContact, profile: Tabulated) -> Finding:
     """Return `smoothed`: depths that are not large against a table's deviation from its points."""
     depth = profile.g(contact.contact_radius)
     if profile.meets_points:
-        return Finding("smoothed", depth < 0, lambda: "")
+        return Finding("smoothed", depth < 0, str)
     rms, (largest, radius) = profile.fit.rms, profile.fit.largest
-    part = where(depth > 0, largest / where(depth > 0, depth, 1.0), 0.0)
+    part = quotient(largest, depth)
 
-    def message() -> str:
+    def message(part: float) -> str:
         return (
             f"no smooth admissible profile meets the points: it deviates by {largest:.2g} at "
             f"radius {radius:.3g}, and by {rms:.2g} in the root mean square. The largest deviation "
-            f"is {100 * extremes(part)[1]:.2g} % of the depth: see data_error. The point at radius "
+            f"is {100 * part:.2g} % of the depth: see data_error. The point at radius "
             f"{profile.fit.deciding:.3g} decides most"
         )
 
@@ -276,14 +269,11 @@ def tip(contact: LoadedContact, profile: Tabulated) -> Finding:
     """Return `tip`: tables whose points do not tell a sharp tip from a smooth one."""
     rival = profile.fit.rival
     other = "smooth" if profile.tip_pressure > 0 else "sharp, with infinite pressure on the axis"
-
-    def message() -> str:
-        return (
-            f"the tip is {other}, with a probability of {_per_cent(rival)}: pressures near the "
-            "axis are open; add points there"
-        )
-
-    return _above_limit("tip", full(rival, contact.contact_radius), message)
+    text = (
+        f"the tip is {other}, with a probability of {_per_cent(rival)}: pressures near the axis "
+        "are open; add points there"
+    )
+    return _above_limit("tip", full(rival, contact.contact_radius), text.format)
 
 
 def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Finding]:
@@ -291,8 +281,9 @@ def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Fin
 
     `half_space`: the estimated error of the half-space approximation exceeds one per cent. It is
     of first order in a/R by the finite size of round bodies, and in the slope by the neglected
-    radial displacement, and of second order by the geometry; the side wall of an elastic punch adds
-    to it. `thin_body`: the contact radius exceeds a tenth of the given thickness of the body.
+    radial displacement, and of second order by the geometry; the side wall of an elastic punch and
+    the radial displacement of a layer add to it. `thin_body`: the contact radius exceeds a tenth of
+    the given thickness of the body.
     `large_strain`: the pressure of round bodies exceeds a tenth of E*. `plastic`: the deviatoric
     stress is infinite somewhere, which no material can bear.
 
@@ -305,9 +296,12 @@ def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Fin
     in_socket = any(map(half_space.is_concave, radii or ()))
     instead: Remedy = "conforming_contact" if in_socket else "finite_elements"
     model = "a model of conforming contact" if in_socket else "finite elements"
+    approximation = (
+        "half-space approximation" if material.layer is None else "model of a flat layer"
+    )
 
-    def message() -> str:
-        total, steepest = extremes(errors.force)[1], extremes(errors.steepness)[1]
+    def message(total: float) -> str:
+        steepest = extremes(errors.steepness)[1]
         is_assumed = material.dundurs_beta is None
         assumed = f" (Poisson's ratio {ASSUMED_RATIO} assumed)" if is_assumed else ""
         flat = radii is not None and np.all(np.isinf(radii[1]))
@@ -321,7 +315,7 @@ def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Fin
         sizes = [extremes(part)[1] for part in errors.parts]
         cause, remedy = causes[sizes.index(max(sizes))]
         return (
-            f"the half-space approximation has an estimated error of {_per_cent(total)}{assumed}, "
+            f"the {approximation} has an estimated error of {_per_cent(total)}{assumed}, "
             f"mainly from {cause}; {remedy}, or use {model}"
         )
 
@@ -348,40 +342,30 @@ def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Fin
 
 def _thin_body(contact: LoadedContact) -> Finding:
     part, error = half_space.layer(contact)
-
-    def message() -> str:
-        return (
-            f"the contact radius is {extremes(part)[1]:.3g} times the thickness: the body is "
-            f"stiffer than a half-space by {_per_cent(extremes(error)[1])}; use a smaller load, or "
-            "finite elements"
-        )
-
-    return _above_limit("thin_body", part, message, "finite_elements")
+    text = (
+        "the contact radius is {:.3g} times the thickness: the body is stiffer than a half-space "
+        f"by {_per_cent(extremes(error)[1])}; use a smaller load, or finite elements"
+    )
+    return _above_limit("thin_body", part, text.format, "finite_elements")
 
 
 def _large_strain(contact: LoadedContact) -> Finding:
     part = 1.5 * contact.mean_pressure / contact.e_star
-
-    def message() -> str:
-        return (
-            f"the pressure of Hertz reaches {extremes(part)[1]:.2g} E*: linear elasticity ends, "
-            "as strains are large; use a smaller load, or finite elements with finite strains"
-        )
-
-    return _above_limit("large_strain", part, message, "finite_elements")
+    text = (
+        "the pressure of Hertz reaches {:.2g} E*: linear elasticity ends, as strains are large; "
+        "use a smaller load, or finite elements with finite strains"
+    )
+    return _above_limit("large_strain", part, text.format, "finite_elements")
 
 
 def layer_strain(depth: Array, layer: Layer) -> Finding:
     """Return `layer_strain`: depths that are not small against the thickness of the layer."""
+    text = (
+        "the depth is {:.2g} times the thickness of the layer, which strains it beyond linear "
+        "elasticity: use a smaller load, or finite elements"
+    )
     part = np.abs(depth) / layer.thickness
-
-    def message() -> str:
-        return (
-            f"the depth is {extremes(part)[1]:.2g} times the thickness of the layer, which strains "
-            "it beyond linear elasticity: use a smaller load, or finite elements"
-        )
-
-    return _above_limit("layer_strain", part, message, "finite_elements")
+    return _above_limit("layer_strain", part, text.format, "finite_elements")
 
 
 def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Finding:
@@ -395,23 +379,19 @@ def of_moduli(e_star: Parameter, g_star: Parameter, beta: float | None) -> Findi
     ratio = number(1.0) * e_star / g_star
     impossible = (_ROOM * ratio < _MODULI[0]) | (ratio > _ROOM * _MODULI[1])
     if beta is not None and not some(impossible):
-        message = (
+        text = (
             f"the bodies are not elastically similar (Dundurs' beta = {beta:.3g}): the model "
             "neglects the coupling of normal and tangential contact, a relative error of this "
             "order in stresses, and of a third of its square in forces and displacements"
         )
         size = number(abs(beta))
-        return _above_limit("elastic_similarity", size, lambda: message, "boundary_elements")
-
-    def unphysical() -> str:
-        return (
-            f"e_star/g_star = {np.extract(impossible, ratio)[0]:.4g} is impossible for isotropic "
-            "bodies: it lies between 0.75 and 1.5, and above 1 unless a Poisson's ratio is "
-            "negative; correct the moduli, or give the bodies"
-        )
-
+        return _above_limit("elastic_similarity", size, text.format, "boundary_elements")
+    text = (
+        "e_star/g_star = {:.4g} is impossible for isotropic bodies: it lies between 0.75 and 1.5, "
+        "and above 1 unless a Poisson's ratio is negative; correct the moduli, or give the bodies"
+    )
     value = float(np.extract(impossible, ratio)[:1].sum())
-    return Finding("impossible_moduli", impossible, unphysical, value, _MODULI[value > 1])
+    return Finding("impossible_moduli", impossible, text.format, value, _MODULI[value > 1])
 
 
 def infinite_pressure(
@@ -436,11 +416,8 @@ def infinite_pressure(
         infinite = infinite | here
         if some(here):
             radii.append(extremes(b)[0])
-
-    def message() -> str:
-        return text.format(listed([f"{b:.12g}" for b in radii]))
-
-    return Finding(code, infinite, message, instead=instead)
+    text = text.format(listed([f"{b:.12g}" for b in radii]))
+    return Finding(code, infinite, text.format, instead=instead)
 
 
 def infinite_deviator(

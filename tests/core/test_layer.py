@@ -353,6 +353,12 @@ def test_strain_and_radial_error_on_a_thin_incompressible_layer() -> None:
     contact = layer.solve(Paraboloid(1e3), gel, contact_radius=[1.0, 2.0])
     assert contact.model_error == pytest.approx([0.32e-3, 2 * 0.88e-3], rel=0.15, abs=0)
     assert contact.warnings == ()
+    (steep,) = layer.solve(Cone(0.05), gel, contact_radius=[1.0, 2.0]).warnings[:1]
+    # 0.32 x 4/(1 + 0.114 x 4) times the slope, and its square.
+    assert steep.value == pytest.approx(0.05 * 0.32 * 4 / 1.456 + 0.05**2, rel=1e-12, abs=0)
+    assert "flat layer has an estimated error of 4.6 %, mainly from the neglected radial" in (
+        steep.message
+    )
     deep = layer.solve(Paraboloid(1.0), _material(1, BONDED, 0.5), indentation_depth=0.2)
     assert "layer_strain" in {notice.code for notice in deep.warnings}
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -27,6 +27,9 @@ from mdr_core.profiles import (
     TruncatedCone,
     TwoSpheres,
 )
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 R = np.linspace(0.0, 1.0, 11)
 FINITE: list[tuple[Profile, list[float]]] = [
@@ -81,6 +84,22 @@ def test_hertz() -> None:
     contact = normal.solve(Paraboloid(2.0), 3.0, maximum_pressure=p)
     assert contact.contact_radius == pytest.approx(np.pi * 2 * p / 6, rel=1e-14, abs=0)
     assert contact.normal_force == pytest.approx(np.pi**3 * 4 * p**3 / 54, rel=1e-13, abs=0)
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [lambda size: Power(size, 3.0), lambda size: RoundedPunch(0.5, size)],
+    ids=["power", "rounded_punch"],
+)
+def test_cases_of_a_sweep_are_contacts_alone(profile: Callable[[Any], Profile]) -> None:
+    """The first contact coordinate of a search does not depend on these parameters."""
+    sizes, pressures = np.array([1.0, 2.0, 4.0]), np.array([0.01, 0.02, 0.03])
+    many = normal.solve(profile(sizes), 2.0, maximum_pressure=pressures)
+    alone = [
+        normal.solve(profile(size), 2.0, maximum_pressure=pressure).contact_radius
+        for size, pressure in zip(sizes.tolist(), pressures.tolist(), strict=True)
+    ]
+    np.testing.assert_allclose(many.contact_radius, alone, rtol=1e-13)
 
 
 def test_pressure_of_a_blunt_cone_grows_with_the_logarithm_of_the_radius() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mdr_core.adhesion import AdhesiveContact
-from mdr_core.fields.traction import by_load, fill, over_loads
+from mdr_core.fields.traction import Traction, by_load, fill, over_loads
 from mdr_core.layer import LayerContact
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
@@ -54,12 +54,7 @@ def pressure(contact: Contact, radius: ArrayLike) -> Array:
     >>> [float(f"{p:.6g}") for p in pressure(contact, [0.0, 0.06, 0.2])]
     [0.095493, 0.0763944, 0.0]
     """
-    if isinstance(contact, AdhesiveContact):
-        return contact.superposed(lambda part: pressure(part, radius))
-    if isinstance(contact, LayerContact):
-        beyond = _beyond_half_space(contact, contact.correction, radius)
-        return pressure(contact.half_space, radius) + beyond
-    return over_loads(_pressed(contact), lambda load, r: load.modulus * load.stress(r), radius)
+    return _load_field(contact, Traction.stress, LayerContact.correction, radius)
 
 
 def normal_displacement(contact: Contact, radius: ArrayLike) -> Array:
@@ -124,25 +119,34 @@ def foundation_load(contact: Contact, radius: ArrayLike) -> Array:
     ------
     InputError : a radius that is negative or not finite, or an array as a parameter of the profile.
     """
-    if isinstance(contact, AdhesiveContact):
-        return contact.superposed(lambda part: foundation_load(part, radius))
-    if isinstance(contact, LayerContact):
-        beyond = _beyond_half_space(contact, contact.load_correction, radius)
-        return foundation_load(contact.half_space, radius) + beyond
-    return over_loads(_pressed(contact), lambda load, r: load.modulus * load.foundation(r), radius)
+    return _load_field(contact, Traction.foundation, LayerContact.load_correction, radius)
 
 
-def _beyond_half_space(
-    contact: LayerContact, correction: Callable[[Indices, Array], Array], radius: ArrayLike
+def _load_field(
+    contact: Contact,
+    of_traction: Callable[[Traction, Array], Array],
+    of_layer: Callable[[LayerContact, Indices, Array], Array],
+    radius: ArrayLike,
 ) -> Array:
-    """Return a correction of the layer over E* as a field, zero outside the contact."""
+    """Return the pressure or the foundation load of a contact over the radius.
 
-    def values(load: int, r: Array) -> Array:
-        inside = r <= np.ravel(contact.contact_radius)[load]
-        added = correction(np.full(r.size, load), np.where(inside, r, 0.0))
-        return np.where(inside, contact.e_star * added, 0.0)
+    `of_traction` is the field over E* of a half-space, and `of_layer` the part that a layer adds to
+    it within the contact, under the loads of given indices.
+    """
+    if isinstance(contact, AdhesiveContact):
+        return contact.superposed(lambda part: _load_field(part, of_traction, of_layer, radius))
+    layer = contact if isinstance(contact, LayerContact) else None
+    pressed = layer.half_space if layer else _pressed(contact)
+    found = over_loads(pressed, lambda load, r: load.modulus * of_traction(load, r), radius)
+    if not layer:
+        return found
 
-    return fill(contact.contact_radius.shape, values, radius)
+    def added(load: int, r: Array) -> Array:
+        inside = r <= np.ravel(layer.contact_radius)[load]
+        part = of_layer(layer, np.full(r.size, load), np.where(inside, r, 0.0))
+        return np.where(inside, layer.e_star * part, 0.0)
+
+    return found + fill(layer.contact_radius.shape, added, radius)
 
 
 def _pressed(contact: Contact) -> NormalContact:

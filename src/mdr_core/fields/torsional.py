@@ -56,10 +56,12 @@ def torsional_stress(contact: TorsionalContact, radius: ArrayLike) -> Array:
             result[inside] = 2 / np.pi**2 * at * (disc + others)
         return result
 
-    size = np.broadcast_to(shear, shape)[..., None] * fill(shape, stuck, radius)
+    friction, e_star, turned = (
+        np.broadcast_to(each, shape)[..., None]
+        for each in (contact.friction_coefficient, normal.e_star, contact.rotation)
+    )
     slips = np.atleast_1d(radius) >= contact.stick_radius[..., None]
-    friction = np.broadcast_to(contact.friction_coefficient, shape)[..., None]
-    whole = np.where(slips, friction * pressure(normal, radius), size)
-    turned = np.asarray(contact.rotation)[..., None]
+    part = np.where(slips, pressure(normal, radius), e_star * fill(shape, stuck, radius))
+    whole = friction * part
     # Without a twist the stress is zero at the edge of a flat punch as well.
     return np.where(turned == 0, 0.0, np.copysign(whole, turned)) + 0.0

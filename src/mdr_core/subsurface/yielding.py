@@ -181,7 +181,7 @@ def yield_finding(
     if isinstance(contact, LoadHistory) and not where[-1]:
         where[-1] = yields(contact.state)
 
-    def message() -> str:
+    def message(_size: float) -> str:
         least = float(np.min(np.broadcast_to(pressed.normal_force, shape)[where]))
         assumed = "" if poissons_ratios else f" for an assumed Poisson's ratio of {ASSUMED_RATIO}"
         return f"the stresses meet Tresca's criterion under a normal force of {least:.4g}{assumed}"

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ellipkm1
 
-from mdr_core import conditioning, materials, validity
+from mdr_core import conditioning, materials
 from mdr_core.doubles import EPS
-from mdr_core.elementwise import in_blocks, where
+from mdr_core.elementwise import in_blocks, quotient
 from mdr_core.materials import Material
-from mdr_core.normal import NormalContact
+from mdr_core.normal import NormalContact, SlippingContact
 from mdr_core.profiles import Profile, Tabulated
 from mdr_core.quadrature import composite_rule
 from mdr_core.torsion.curve import DEEPEST, VirginCurves
@@ -50,7 +50,7 @@ _OF_CURVES: Final = 10.0
 
 
 @dataclass(frozen=True, repr=False)
-class TorsionalContact(validity.ResultsOverLoads):
+class TorsionalContact(SlippingContact):
     """Normal contact under a twist, at any number of pairs of loads.
 
     Results are arrays over the broadcast loads.
@@ -86,20 +86,15 @@ class TorsionalContact(validity.ResultsOverLoads):
     )
     method: ClassVar[str] = "quadrature"
 
-    def computed(self) -> dict[str, Any]:
-        """Return the quantities by name, with the quantities of the normal contact."""
-        return self.normal.computed() | super().computed()
-
     @property
     def torsion_arm(self) -> Array:
         """Largest torque divided by mu F_N: (pi/4) int x^2 dg/int x dg [length].
 
         At zero load it is the limit: pi b/4 on a flat of radius b.
         """
-        loaded = self.normal.loaded
-        force = where(loaded, self.normal.normal_force / self.normal.e_star, 1.0)
+        force = self.normal.normal_force / self.normal.e_star
         limit = np.pi / 4 * self.normal.profile.first_radius
-        return where(loaded, np.pi / 2 * self.second_moment / force, limit)
+        return quotient(np.pi / 2 * self.second_moment, force, limit)
 
     @cached_property
     def data_error(self) -> Array | None:
@@ -134,11 +129,6 @@ class TorsionalContact(validity.ResultsOverLoads):
     def model_error(self) -> Array:
         """Estimated relative error of the model in each case [1]; see the normal contact."""
         return self.normal.model_error + 0 * self.rotation
-
-    @property
-    def slips_from(self) -> Array:
-        """Least radius with slip [length]; infinite without slip."""
-        return np.where(self.slip_width > 0, self.stick_radius, np.inf)
 
     @property
     def stick_error(self) -> Array:
@@ -260,11 +250,10 @@ def _groups(profile: Profile, edge: Array, shape: tuple[int, ...]) -> Iterator[_
     loaded = np.flatnonzero(edge > 0)
     if profile.swept:
         names = profile.parameters
-        columns = [np.broadcast_to(value, shape).ravel() for value in names.values()]
+        columns = {name: np.broadcast_to(names[name], shape).ravel() for name in profile.swept}
         for case in loaded:
-            own = dict(zip(names, (float(column[case]) for column in columns), strict=True))
-            alone = np.array([case]), np.array([0])
-            yield profile.with_parameters(own), edge[alone[0]], *alone
+            own = {name: float(column[case]) for name, column in columns.items()}
+            yield profile.with_parameters(own), edge[[case]], np.array([case]), np.array([0])
         return
     contacts, place = np.unique(edge[loaded], return_inverse=True)
     order = np.argsort(place, kind="stable")
@@ -302,11 +291,7 @@ def _slip_width(contact: NormalContact, stick: Array) -> Array:
     if profile.is_flat_punch:
         detail = "a flat punch sticks up to a finite rotation: prescribe torque or rotation"
         reject(path, stick, (stick == a) & contact.loaded, detail)
-    if contact.control == "contact_radius" or profile.is_flat_punch:
-        return a - stick
-    # The contact coordinate of a computed edge is accurate; its radius may not be.
-    past = np.maximum(contact.coordinate - (stick - profile.first_radius), 0.0)
-    return np.where(stick < a, past, 0.0)
+    return contact.width_outside(stick)
 
 
 def _condition(name: str, states: Array, slides: Flags) -> Array:

@@ -21,6 +21,7 @@ from scipy.special import ellipkm1
 
 from mdr_core.abel.displacement import Branch, smooth_parts
 from mdr_core.doubles import EPS, TINY
+from mdr_core.elementwise import quotient
 from mdr_core.inversion import invert
 from mdr_core.profiles import Profile
 from mdr_core.quadrature import NODES, STEEP, composite_rule
@@ -141,7 +142,7 @@ class VirginCurves:
         tops = np.zeros((4, len(self.length) + 1, self.a.size))
         tops[0] = np.concatenate([[self.step * np.pi / 2], rotation[-1]])
         along = np.multiply.outer(_NODES, self.length)
-        rate = (rotation[:-1] - tops[0, :-1]) / np.where(along > 0, along, 1.0)
+        rate = quotient(rotation[:-1] - tops[0, :-1], along)
         series = np.stack([np.tensordot(each, rate, 1) for each in (_MATRIX, _SLOPES)], axis=1)
         gains, weights = self._inside(self.length, series)
         area, gain = weights * (tops[0, :-1] + gains), np.diff(tops[0], axis=0)
@@ -215,8 +216,7 @@ class VirginCurves:
         along = invert(sloped, need, start, 0 * length, length)
         state = self._state(np.where(load >= tops[1:][at], length, along), at)
         # Below the step of P at the edge a flat punch sticks completely.
-        onset = tops[0, contact]
-        state[2:4] *= np.where(load < onset, load / np.where(onset > 0, onset, 1.0), 1.0)
+        state[2:4] *= np.minimum(quotient(load, tops[0, contact], 1.0), 1.0)
         return state
 
     def at_stick(self, stick: Array, width: Array, contact: Indices) -> Array:
