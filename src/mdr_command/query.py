@@ -182,6 +182,7 @@ def _curve(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
             raise InputError(("segment",), detail)
         used = np.array(curve.segments) == wanted
     lists = zip(MeasuredCurve._fields, curve[:3], strict=False)
+    arguments.points = np.flatnonzero(used).tolist()
     return {name: values[used].tolist() for name, values in lists if values is not None}
 
 
@@ -278,6 +279,8 @@ def _report(error: ServiceError, arguments: argparse.Namespace) -> int:
         elif arguments.area_coefficients and first in {"kind", "profile"}:
             parts = [_flag(rest if rest in _HEIGHTS else "area_coefficients"), detail]
         elif first in files:
+            if first in MeasuredCurve._fields and rest:
+                rest = str(arguments.points[int(rest)])
             parts = [files[first], rest, detail]
         elif by_options or place in _OTHER_OPTIONS:
             renamed = _NAME.sub(

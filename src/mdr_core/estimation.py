@@ -3,10 +3,12 @@
 Source: notes, §15.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import lru_cache
-from math import inf
+from functools import cached_property, lru_cache
+from math import inf, sqrt
 from typing import ClassVar, Final, Self
 
 import numpy as np
@@ -24,6 +26,9 @@ _SAME, _PART = 1e-8, 0.1
 # Relative decrease of the sum of squares at which Gauss-Newton steps take over.
 _DECREASE: Final = 1e-9
 
+Parameters = dict[str, float]
+"""Values of the parameters of a model by name."""
+
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class LeastSquaresFit(validity.ContactResults):
@@ -31,10 +36,9 @@ class LeastSquaresFit(validity.ContactResults):
 
     fit: tuple[str, ...]
     """Names of the fitted parameters, in the order of `standard_errors` and `correlation`."""
-    standard_errors: Array
-    """Standard deviations of the fitted parameters, shape (n,)."""
-    correlation: Array
-    """Their correlation, shape (n, n) [1]."""
+    effects: Array
+    """Changes of the fitted parameters by independent errors of one standard deviation each, in
+    columns, shape (n, m)."""
     residual: Array
     """Measured less fitted forces [force], shape (k,)."""
     noise: float
@@ -47,6 +51,17 @@ class LeastSquaresFit(validity.ContactResults):
     """Warnings about the residuals and the parameters."""
     method: ClassVar[str] = "least_squares"
 
+    @property
+    def standard_errors(self) -> Array:
+        """Standard deviations of the fitted parameters, shape (n,)."""
+        return np.asarray(np.linalg.norm(self.effects, axis=1))
+
+    @property
+    def correlation(self) -> Array:
+        """Their correlation, shape (n, n) [1]."""
+        parts = self.effects / self.standard_errors[:, None]
+        return np.asarray(parts @ parts.T)
+
 
 @dataclass(frozen=True, eq=False)
 class Precision:
@@ -58,6 +73,11 @@ class Precision:
     """Orthonormal slopes, shape (k, n)."""
     inverse: Array
     """Changes of the parameters, times `scale`, by those of the curve along `q`, shape (n, n)."""
+
+    @property
+    def effects(self) -> Array:
+        """Changes of the parameters by those of the curve along `q`, shape (n, n)."""
+        return self.inverse / self.scale[:, None]
 
     @classmethod
     def of(cls, slopes: Array, names: Sequence[str], curve: str) -> Self:
@@ -77,24 +97,9 @@ class Precision:
         told = "cannot be told apart: give" if len(lost) > 1 else "has no effect: leave out"
         raise InputError((curve,), f"does not determine {which}, which {told} one")
 
-    @property
-    def deviations(self) -> Array:
-        """Standard deviations of the parameters, over that of the curve."""
-        return np.asarray(np.linalg.norm(self.inverse, axis=1) / self.scale)
-
-    @property
-    def unit_rows(self) -> Array:
-        """Rows of `inverse` over their sizes."""
-        return self.inverse / np.linalg.norm(self.inverse, axis=1)[:, None]
-
-    @property
-    def correlation(self) -> Array:
-        """Correlation of the parameters, shape (n, n) [1]."""
-        return np.asarray(self.unit_rows @ self.unit_rows.T)
-
     def changes(self, curve: Array) -> Array:
         """Return the first-order changes of the parameters due to a change of the curve."""
-        return np.asarray(self.inverse @ (self.q.T @ curve) / self.scale)
+        return np.asarray(self.effects @ (self.q.T @ curve))
 
     def error(self, relative: float, residual: Array, curve: Array) -> float:
         """Return a bound on the numerical error of the parameters, over their sizes [1].
@@ -125,41 +130,125 @@ def require_fitted(
             raise InputError((name,), detail)
 
 
-def minimum(model: Callable[[Array], tuple[Array, Array]], first: Array, bounds: Array) -> Array:
-    """Return the parameters of the least sum of squares next to the first ones.
+def linear(
+    shapes: Array, measured: Array, factor: float | None = None, *, with_offset: bool = True
+) -> tuple[Array, Array, Array]:
+    """Return the least sums of squares of `measured` less factor * shape + offset.
 
-    Parameters: residuals and their slopes as a function of the parameters, and lower and upper
-    bounds, shape (2, n).
+    Parameters: shapes, shape (..., k), and measured values, shape (k,); the factor if it is known;
+    False for an offset of 0. The factors and offsets follow the sums, shape (...).
     """
+    mean, middle = shapes.mean(axis=-1) * with_offset, float(measured.mean()) * with_offset
+    x, y = shapes - mean[..., None], measured - middle
+    size = np.sum(x * x, axis=-1)
+    factors = np.where(size > 0, x @ y / np.where(size > 0, size, 1.0), 0.0)
+    if factor is not None:
+        factors = np.full(size.shape, factor)
+    squares = np.sum(np.square(y - factors[..., None] * x), axis=-1)
+    return squares, factors, middle - factors * mean
 
-    # Residuals and slopes are asked for in turn at one place.
-    @lru_cache(maxsize=1)
-    def at(place: bytes) -> tuple[Array, Array]:
-        return model(np.frombuffer(place))
 
-    found = least_squares(
-        *(lambda x: at(x.tobytes())[0], first, lambda x: at(x.tobytes())[1], tuple(bounds)),
-        x_scale="jac",
-        ftol=_DECREASE,
-        xtol=EPS,
-        gtol=None,
-    )
+class Model(ABC):
+    """Model of the forces of a measured curve, and its least squares."""
 
-    def step(x: Array) -> tuple[Array, float]:
-        residual, slopes = model(x)
-        # LAPACK writes to the terminal if a slope is not finite.
-        if not np.isfinite(slopes).all():
-            return np.zeros_like(x), inf
-        change = np.asarray(np.linalg.lstsq(slopes, -residual)[0], dtype=float)
-        return change, float(np.linalg.norm(slopes @ change))
+    force: Array
+    """Measured forces [force], shape (k,)."""
+    fit: tuple[str, ...]
+    """Parameters that are fitted."""
+    argument: ClassVar[str]
+    """Argument at fault where the curve leaves parameters open."""
 
-    # The search stops about 1e-8 from the minimum, where rounding errors hide the decrease of the
-    # sum of squares. Gauss-Newton steps refine it; each is kept if the next is less than half as
-    # long.
-    x, (change, length) = found.x, step(found.x)
-    while ((bounds[0] <= x + change) & (x + change <= bounds[1])).all():
-        following, remaining = step(x + change)
-        if not remaining < length / 2:
-            break
-        x, change, length = x + change, following, remaining
-    return np.asarray(x)
+    @abstractmethod
+    def at(self, parameters: Parameters) -> tuple[Array, Array]:
+        """Return the forces, and their slopes in the fitted parameters, shape (k, n)."""
+
+    @property
+    @abstractmethod
+    def best(self) -> Parameters:
+        """Parameters of the least sum of squares."""
+
+    @cached_property
+    def fitted(self) -> tuple[Array, Array]:
+        """Forces and slopes of the best parameters."""
+        return self.at(self.best)
+
+    @property
+    def residual(self) -> Array:
+        """Measured less fitted forces [force], shape (k,)."""
+        return self.force - self.fitted[0]
+
+    @property
+    def free(self) -> int:
+        """Degrees of freedom of the residuals."""
+        return self.force.size - len(self.fit)
+
+    @property
+    def squares(self) -> float:
+        """Least sum of squares [force^2]."""
+        return float(np.sum(np.square(self.residual)))
+
+    @property
+    def scatter(self) -> float:
+        """Standard deviation of the residuals, at least the rounding error [force]."""
+        return max(sqrt(self.squares / self.free), EPS * float(np.abs(self.force).max()))
+
+    @cached_property
+    def precision(self) -> Precision:
+        """Precision of the best parameters, or an InputError."""
+        return Precision.of(self.fitted[1], self.fit, self.argument)
+
+    @np.errstate(all="ignore")
+    def minimum(
+        self, start: Parameters, bounds: Mapping[str, tuple[float, float, float]]
+    ) -> Parameters:
+        """Return the parameters of the least sum of squares next to the first ones.
+
+        Raises InputError if the model leaves the range of numbers.
+
+        Parameters
+        ----------
+        start : parameters from which the search starts.
+        bounds : lower bound, upper bound and unit of each parameter.
+        """
+        low, high, unit = np.transpose([bounds[name] for name in self.fit])
+        ends, size = np.array([low, high]) / unit, float(np.abs(self.force).max()) or 1.0
+
+        def values(x: Iterable[float]) -> Parameters:
+            return start | dict(zip(self.fit, (unit * x).tolist(), strict=True))
+
+        # Residuals and slopes are asked for in turn at one place.
+        @lru_cache(maxsize=1)
+        def at(*x: float) -> tuple[Array, Array]:
+            forces, slopes = self.at(values(x))
+            return (forces - self.force) / size, slopes * unit / size
+
+        def step(x: Array) -> tuple[Array, float]:
+            residual, slopes = at(*x)
+            # LAPACK writes to the terminal if a slope is not finite.
+            if not np.isfinite(slopes).all():
+                return np.zeros_like(x), inf
+            change = np.asarray(np.linalg.lstsq(slopes, -residual)[0], dtype=float)
+            return change, float(np.linalg.norm(slopes @ change))
+
+        first = np.array([start[name] for name in self.fit]) / unit
+        with suppress(ValueError, ZeroDivisionError, np.linalg.LinAlgError):
+            x = least_squares(
+                *(lambda x: at(*x)[0], first, lambda x: at(*x)[1], tuple(ends)),
+                x_scale="jac",
+                ftol=_DECREASE,
+                xtol=EPS,
+                gtol=None,
+            ).x
+            # The search stops about 1e-8 from the minimum, where rounding errors hide the decrease
+            # of the sum of squares. Gauss-Newton steps refine it; each is kept if the next is less
+            # than half as long.
+            change, length = step(x)
+            while ((ends[0] <= x + change) & (x + change <= ends[1])).all():
+                following, remaining = step(x + change)
+                if not remaining < length / 2:
+                    break
+                x, change, length = x + change, following, remaining
+            if np.isfinite(x).all():
+                return values(x)
+        detail = "does not determine the parameters: extend the curve, or fit fewer of them"
+        raise InputError((self.argument,), detail)

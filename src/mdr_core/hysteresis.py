@@ -6,8 +6,9 @@ After a reversal of the displacement the force follows the law of first loading,
 Source: mindlin-deresiewicz; notes, §15.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 from math import inf
 from typing import ClassVar, Final
@@ -18,7 +19,7 @@ from numpy.typing import ArrayLike
 from mdr_core import residuals, tangential
 from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
-from mdr_core.estimation import LeastSquaresFit, Precision, minimum, require_fitted
+from mdr_core.estimation import LeastSquaresFit, Model, Parameters, linear, require_fitted
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
@@ -35,6 +36,8 @@ PARAMETERS: Final = (
     "displacement_offset",
 )
 """Quantities that can be fitted."""
+# Those of the law of the contact.
+_LAW: Final = PARAMETERS[:2]
 # Amplitudes that are tried first, over that of full slip; parts of the latter in the rig; points of
 # first loading between which the forces are interpolated for this.
 _TRIED, _IN_RIG, _POINTS = np.geomspace(0.01, 30.0, 40), np.linspace(0.0, 0.96, 25), 200
@@ -42,10 +45,8 @@ _TRIED, _IN_RIG, _POINTS = np.geomspace(0.01, 30.0, 40), np.linspace(0.0, 0.96, 
 _FEWEST: Final = 2
 # Most steps of Newton's method, which takes about 12, and their relative size at the end.
 _STEPS, _CONVERGED = 100, 8 * EPS
-# Range of log G* and log mu about the start, which keeps the numbers representable.
-_RANGE: Final = 15.0
-# Step of a difference of logarithms about the result, and of C in its unit.
-_STEP: Final = 1e-5
+# Range of G* and mu about the start, which keeps the numbers representable.
+_RANGE: Final = 3e6
 # Half width of an interval of 95 % in log G* or log mu, over the error, and at most. Source: notes,
 # §15.
 _HALF, _WIDEST = 1.96, 0.5
@@ -58,7 +59,6 @@ _CAUSES: Final = {
     "first loading, or the force lags behind",
     "correlated_noise": "the forces drift, or neighbouring errors are alike",
 }
-_CODES: Final = {"two_branches": "misfit", "drift": "correlated_noise"}
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -176,56 +176,56 @@ def solve(
     known = dict(zip(names, (g_star, friction_coefficient, rig_compliance), strict=True))
     fit = [name for name in PARAMETERS[:4] if known.get(name) is None] if fit is None else fit
     require_fitted(fit, PARAMETERS, known)
-    for name, value in known.items():
-        if value is not None:
-            require = require_not_negative if name == "rig_compliance" else as_positive
-            require((name,), np.asarray(single((name,), value)))
+    given = {name: value for name, value in known.items() if value is not None}
+    for name, value in given.items():
+        require = require_not_negative if name == "rig_compliance" else as_positive
+        require((name,), np.asarray(single((name,), value)))
     lists = {"tangential_displacement": tangential_displacement}
     curve = as_curve("displacements", **lists, tangential_force=tangential_force)
     if curve[0].size < _FEWEST * len(fit) or np.ptp(curve[0]) == 0:
         detail = f"must hold {_FEWEST * len(fit)} points of a loop"
         raise InputError(("tangential_displacement",), detail)
-    return _Loop(contact, *curve, fit, known).result()
+    return _Loop(contact, *curve, tuple(fit), given).result()
 
 
-class _Loop:
+@dataclass(frozen=True, eq=False)
+class _Loop(Model):
     """Measured loop, and the model that is fitted to it."""
 
-    def __init__(
-        self,
-        contact: NormalContact,
-        u: Array,
-        force: Array,
-        fit: Sequence[str],
-        known: Mapping[str, float | None],
-    ) -> None:
-        self.contact, self.displacement, self.force = contact, u, force
-        self.fit, self.known = tuple(fit), known
-        self.free = [PARAMETERS.index(name) for name in fit]
-        self.amplitude, self.size = float(np.ptp(u)) / 2, float(np.ptp(force)) or 1.0
-        self.middle, self.sign = (u.max() + u.min()) / 2, residuals.directions(u)
-        self.units = np.array(
-            [1.0, 1.0, self.size, self.amplitude / self.size, self.amplitude], dtype=float
-        )
-        """Units of log G*, log mu, F_0, C and U_0 less the middle of the displacements."""
+    contact: NormalContact
+    displacement: Array
+    force: Array
+    fit: tuple[str, ...]
+    given: Parameters
+    """Values of the parameters that are not fitted."""
+    argument: ClassVar[str] = "tangential_displacement"
 
-    def places(self, x: Array) -> Array:
+    @cached_property
+    def amplitude(self) -> float:
+        """Half of the range of displacements [length]."""
+        return float(np.ptp(self.displacement)) / 2
+
+    @cached_property
+    def sign(self) -> Array:
+        """1 on rising displacement, and -1 on falling."""
+        return residuals.directions(self.displacement)
+
+    def places(self, middle: float) -> Array:
         """Return displacements on first loading that stand for the points, and the amplitude."""
-        from_middle = self.displacement - self.middle - self.amplitude * x[4]
-        halves = (self.amplitude + self.sign * from_middle) / 2
+        halves = (self.amplitude + self.sign * (self.displacement - middle)) / 2
         return np.append(np.maximum(halves, 0.0), self.amplitude)
 
     def branches(self, first: Array) -> Array:
         """Return the forces of the loop for those on first loading, by Masing's rule."""
-        return np.asarray(self.sign * (2 * first[:-1] - first[-1]))
+        return np.asarray(self.sign * (2 * first[..., :-1] - first[..., -1:]))
 
-    def first_loading(self, x: Array) -> TangentialContact:
-        """Return the contact at the displacements u + C F(u) = `places`, for all parameters.
+    def first_loading(self, values: Parameters) -> TangentialContact:
+        """Return the contact at the displacements u + C F(u) = `places`.
 
         F is concave, so that Newton's method rises to the root from below, u = U/(1 + 2 G* a C).
         """
-        (g_star, friction), rig = np.exp(x[:2]).tolist(), float(x[3] * self.units[3])
-        places = self.places(x)
+        g_star, friction, _, rig, middle = (values[name] for name in PARAMETERS)
+        places = self.places(middle)
         u = places / (1 + rig * 2 * g_star * float(self.contact.contact_radius))
         for _ in range(_STEPS):
             law = tangential.solve(self.contact, g_star, friction, tangential_displacement=u)
@@ -236,35 +236,46 @@ class _Loop:
             u = u + step
         return law
 
-    def forces(self, x: Array) -> Array:
-        """Return the forces over `size` for all parameters, in `units`."""
-        return self.branches(self.first_loading(x).tangential_force) / self.size + x[2]
-
-    def slopes(self, x: Array) -> Array:
-        """Return the slopes of `forces`, at given displacements of contact and rig together."""
-        law = self.first_loading(x)
+    def at(self, values: Parameters) -> tuple[Array, Array]:
+        """Return the forces of the model, and their slopes in the fitted parameters."""
+        law = self.first_loading(values)
         force, stiffness = law.tangential_force, law.tangential_stiffness
-        yielding = 1 / (1 + x[3] * self.units[3] * stiffness)
-        # F/(mu E*) depends on G* u/(mu E*) alone, and dF/du = 2 G* c.
         of_g_star = stiffness * law.tangential_displacement
-        of_rig = -force * stiffness * self.units[3]
-        firsts = (of_g_star, force - of_g_star, of_rig)
-        columns = [self.branches(each * yielding) / self.size for each in firsts]
-        columns.insert(2, np.ones_like(self.force))
+        # Without slip the difference is rounding error.
+        slips = np.where(force - of_g_star > _CONVERGED * force, force - of_g_star, 0.0)
+        yielding = 1 / (1 + values["rig_compliance"] * stiffness)
+        # F/(mu E*) depends on G* u/(mu E*) alone, and dF/du = k.
+        firsts = {
+            "g_star": of_g_star / values["g_star"],
+            "friction_coefficient": slips / values["friction_coefficient"],
+            "rig_compliance": -force * stiffness,
+        }
+        columns = {name: self.branches(first * yielding) for name, first in firsts.items()}
+        columns["force_offset"] = np.ones_like(self.force)
         # A point moves by half of U_0 on first loading, and its force counts twice.
-        columns.append(-(stiffness * yielding)[:-1] * self.amplitude / self.size)
-        return np.column_stack(columns)[:, self.free]
+        columns["displacement_offset"] = -(stiffness * yielding)[:-1]
+        slopes = np.column_stack([columns[name] for name in self.fit])
+        return self.branches(force) + values["force_offset"], slopes
 
-    def energy_slopes(self, x: Array) -> Array:
-        """Return the slopes of the energy of a cycle, by central differences."""
-        slopes = []
-        for step in _STEP * np.eye(x.size)[self.free]:
-            above, below = (self.first_loading(end) for end in (x + step, x - step))
-            change = above.dissipated_energy[-1] - below.dissipated_energy[-1]
-            slopes.append(4 * change / (2 * _STEP))
-        return np.array(slopes)
+    def energy_slopes(self, turning: TangentialContact) -> Array:
+        """Return the slopes of the energy of a cycle, 4 D, in the fitted parameters.
 
-    def start(self) -> Array:
+        On first loading D = mu^2/G* f(G* u/mu) and dD/du = F - k u = s, and the displacement of
+        contact and rig u + C F is that of the turning points.
+        """
+        energy, u = float(turning.dissipated_energy), float(turning.tangential_displacement)
+        force, stiffness = float(turning.tangential_force), float(turning.tangential_stiffness)
+        slips, rig = force - stiffness * u, self.best["rig_compliance"]
+        moved = slips / (1 + rig * stiffness)
+        slopes = {
+            "g_star": (moved * u - energy) / self.best["g_star"],
+            "friction_coefficient": (2 * energy - slips * (u + rig * moved))
+            / self.best["friction_coefficient"],
+            "rig_compliance": -force * moved,
+        }
+        return 4 * np.array([slopes.get(name, 0.0) for name in self.fit])
+
+    def start(self) -> Parameters:
         """Return the best of many parameters, or an InputError.
 
         For a given amplitude over that of full slip, and part of the latter in the rig, the force
@@ -275,90 +286,78 @@ class _Loop:
         law = tangential.solve(pressed, pressed.e_star, 1.0, tangential_displacement=part * depth)
         reached = law.tangential_force / pressed.normal_force
         some = slice(None, None, max(1, self.force.size // _POINTS))
-        measured, on_first = self.force[some] / self.size, self.places(np.zeros(5)) / self.amplitude
-        rigs = _IN_RIG[: 1 if self.known["rig_compliance"] == 0 else None].tolist()
+        middle = float(self.displacement.max() + self.displacement.min()) / 2
+        on_first = self.places(middle) / self.amplitude
+        rigs = _IN_RIG[: 1 if self.given.get("rig_compliance") == 0 else None].tolist()
         tried = list(product(rigs, _TRIED.tolist()))
         firsts = (
             np.interp(on_first * ratio, (1 - in_rig) * part + in_rig * reached, reached)
             for in_rig, ratio in tried
         )
         shapes = np.array([self.branches(first)[some] for first in firsts])
-        rising = shapes - shapes.mean(axis=1)[:, None]
-        sizes = np.linalg.norm(rising, axis=1)
-        # The sum of squares is least where the part of the forces in the shape is largest.
-        along = rising @ measured / np.where(sizes > 0, sizes, inf)
-        best = int(along.argmax())
-        if not along[best] > 0:
+        squares, limits, offsets = linear(shapes, self.force[some])
+        best = int(np.where(limits > 0, squares, inf).argmin())
+        if not limits[best] > 0:
             raise InputError(("tangential_force",), "must rise with the displacement")
-        (in_rig, ratio), limit = tried[best], float(along[best] / sizes[best])
-        friction = limit * self.size / float(pressed.normal_force)
+        (in_rig, ratio), limit = tried[best], float(limits[best])
+        friction = limit / float(pressed.normal_force)
         whole = (1 - in_rig) * self.amplitude / ratio
         g_star = friction * float(pressed.e_star) * depth / whole
-        offset = measured.mean() - limit * shapes[best].mean()
-        found = [np.log(g_star), np.log(friction), offset, in_rig / ratio / limit, 0.0]
-        values = np.array([self.known.get(name) for name in PARAMETERS], dtype=float) / self.units
-        given = [*np.log(values[:2]), 0.0, values[3], 0.0]
-        return np.where(np.isin(range(5), self.free), found, given)
+        rig, offset = in_rig / ratio * self.amplitude / limit, float(offsets[best])
+        found = dict(zip(PARAMETERS, (g_star, friction, offset, rig, middle), strict=True))
+        left_out = {"force_offset": 0.0, "displacement_offset": middle} | self.given
+        return left_out | {name: found[name] for name in self.fit}
+
+    @cached_property
+    def best(self) -> Parameters:
+        """Parameters of the least sum of squares, or an InputError."""
+        start, size = self.start(), float(np.ptp(self.force)) or 1.0
+        middle, reach = start["displacement_offset"], self.amplitude
+        bounds = {
+            **{name: (start[name] / _RANGE, start[name] * _RANGE, start[name]) for name in _LAW},
+            "force_offset": (-inf, inf, size),
+            "rig_compliance": (0.0, inf, reach / size),
+            "displacement_offset": (middle - reach, middle + reach, reach),
+        }
+        return self.minimum(start, bounds)
 
     def result(self) -> LoopFit:
         """Return the fit, or an InputError."""
-        start, measured = self.start(), self.force / self.size
-        bounds = np.full((2, start.size), inf) * [[-1], [1]]
-        bounds[:, :2], bounds[0, 3] = np.add.outer([-_RANGE, _RANGE], start[:2]), 0.0
-        bounds[:, 4] = -1.0, 1.0
-
-        def whole(free: Array) -> Array:
-            values = start.copy()
-            values[self.free] = free
-            return values
-
-        def model(free: Array) -> tuple[Array, Array]:
-            x = whole(free)
-            return self.forces(x) - measured, self.slopes(x)
-
-        found = minimum(model, start[self.free], bounds[:, self.free])
-        x = whole(found)
-        residual = measured - self.forces(x)
-        scatter = float(np.sqrt(residual @ residual / (residual.size - len(self.fit))))
+        found, residual, (forces, _) = self.best, self.residual, self.fitted
         try:
-            precision = Precision.of(self.slopes(x), self.fit, "tangential_displacement")
+            precision = self.precision
         except InputError:
             raise self.refused() from None
-        # The model is exact to rounding.
-        errors = max(scatter, EPS) * precision.deviations
-        if _HALF * errors[np.less(self.free, 2)].max(initial=0.0) > _WIDEST:
+        effects = self.scatter * precision.effects
+        errors = dict(zip(self.fit, np.linalg.norm(effects, axis=1).tolist(), strict=True))
+        if any(_HALF * errors.get(name, 0.0) > _WIDEST * found[name] for name in _LAW):
             raise self.refused()
-        tests = residuals.misfit(self.displacement, precision.q, residual, measured, in_time=True)
-        code, misfit = residuals.worst(tests)
-        code = _CODES.get(code, code)
-        notices = [*residuals.doubts(code, misfit, _CAUSES[code])]
-        units = self.units * [*np.exp(x[:2]), 1.0, 1.0, 1.0]
-        values = x * self.units
-        if "rig_compliance" in self.fit:
-            error = errors[self.fit.index("rig_compliance")]
-            if x[3] < _NO_WORSE * error:
-                message = "no compliance of the rig is seen: rig_compliance is at its bound 0"
-                notices.append(Notice("bound", message, float(values[3]), None))
-        law = self.first_loading(x)
+        tests = residuals.misfit(self.displacement, precision.q, residual, self.force, in_time=True)
+        misfit, notices = residuals.judged(tests, _CAUSES)
+        rig = found["rig_compliance"]
+        if rig < _NO_WORSE * errors.get("rig_compliance", 0.0):
+            message = "no compliance of the rig is seen: rig_compliance is at its bound 0"
+            notices = (*notices, Notice("bound", message, rig, None))
+        law = self.first_loading(found)
         most = float(law.tangential_displacement[-1])
-        moduli = np.exp(x[:2]).tolist()
-        slopes = self.energy_slopes(x) / precision.scale
+        moduli = found["g_star"], found["friction_coefficient"]
+        turning = tangential.solve(self.contact, *moduli, tangential_displacement=most)
+        energy_error = np.linalg.norm(self.energy_slopes(turning) @ effects)
         return LoopFit(
             fit=self.fit,
-            turning=tangential.solve(self.contact, *moduli, tangential_displacement=most),
-            force_offset=float(values[2]),
-            rig_compliance=float(values[3]),
-            displacement_offset=float(self.middle + values[4]),
-            standard_errors=errors * units[self.free],
-            correlation=precision.correlation,
+            turning=turning,
+            force_offset=found["force_offset"],
+            rig_compliance=rig,
+            displacement_offset=found["displacement_offset"],
+            effects=effects,
             tangential_displacement=self.displacement,
-            tangential_force=self.force - residual * self.size,
-            residual=residual * self.size,
-            noise=scatter * self.size,
+            tangential_force=forces,
+            residual=residual,
+            noise=self.scatter,
             misfit=misfit,
-            dissipated_energy_error=scatter * float(np.linalg.norm(slopes @ precision.inverse)),
-            error_estimate=precision.error(float(law.error_estimate), residual, measured),
-            notices=tuple(notices),
+            dissipated_energy_error=float(energy_error),
+            error_estimate=precision.error(float(law.error_estimate), residual, self.force),
+            notices=notices,
         )
 
     def refused(self) -> InputError:

@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
+from scipy.ndimage import convolve1d
 from scipy.special import fdtrc, ndtr, ndtri
 from scipy.stats import rankdata
 
@@ -40,6 +41,8 @@ _DEPTH, _BRANCH, _SCATTER = 8, 4, 3
 _CONTAINED: Final = 1e-6
 # Most polynomials of the time.
 _TIME: Final = 4
+# Warnings where the causes of two need not be told apart.
+_GENERAL: Final = {"two_branches": "misfit", "drift": "correlated_noise"}
 # Fewest points of a branch.
 _FEWEST: Final = 3
 
@@ -108,26 +111,26 @@ def misfit(
     return found
 
 
-def worst(found: Mapping[str, float]) -> tuple[str, float]:
-    """Return the warning of the least probability, and the joint probability of all tests."""
+def judged(
+    found: Mapping[str, float], causes: Mapping[str, str], remedy: str = ""
+) -> tuple[float, tuple[Notice, ...]]:
+    """Return the joint probability of all tests, and the warning that residuals are not noise.
+
+    Parameters: the result of `misfit`; causes by the warning, of which the more general one holds
+    where there is no other; a remedy of a misfit.
+    """
     code = min(found, key=lambda each: found[each], default="misfit")
+    joint = min(1.0, len(found) * found[code]) if found else 1.0
+    if joint >= FALSE_ALARM:
+        return joint, ()
     if code == "correlated_noise" and found["misfit"] * len(found) < FALSE_ALARM:
         code = "misfit"
-    return code, min(1.0, len(found) * min(found.values()) if found else 1.0)
-
-
-def doubts(code: str, misfit: float, cause: str, remedy: str = "") -> tuple[Notice, ...]:
-    """Return the warning that residuals are not noise, if they are not.
-
-    Parameters: the code and the joint probability, see `worst`; the cause, and a remedy after it.
-    """
-    if misfit >= FALSE_ALARM:
-        return ()
+    code = code if code in causes else _GENERAL[code]
     message = (
-        f"the residuals are not noise (probability {misfit:.1g}): {cause}, and the standard errors "
-        f"do not hold{remedy}"
+        f"the residuals are not noise (probability {joint:.1g}): {causes[code]}, and the standard "
+        f"errors do not hold{remedy if code == 'misfit' else ''}"
     )
-    return (Notice(code, message, misfit, FALSE_ALARM),)
+    return joint, (Notice(code, message, joint, FALSE_ALARM),)
 
 
 def _prepared(q: Array, residual: Array, force: Array) -> tuple[Array, Array, float]:
@@ -177,8 +180,7 @@ def _lag(q: Array, r: Array, order: NDArray[np.intp]) -> float:
         return 1.0
 
     def neighbours(v: Array) -> Array:
-        none = np.zeros_like(v[:1])
-        return np.asarray((np.concatenate([v[1:], none]) + np.concatenate([none, v[:-1]])) / 2)
+        return np.asarray(convolve1d(v, [0.5, 0.0, 0.5], axis=0, mode="constant"))
 
     moved = neighbours(q)
     inside = q.T @ moved

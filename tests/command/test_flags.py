@@ -135,6 +135,20 @@ def test_fit_of_a_separation_reverses_and_reports_its_sign(tmp_path: Path, capsy
     assert "the separations in the file with their sign reversed" in capsys.readouterr().err
 
 
+def test_error_of_a_named_segment_counts_the_points_of_the_file(
+    tmp_path: Path, capsys: Capture
+) -> None:
+    curve, table = tmp_path / "curve.csv", tmp_path / "tip.csv"
+    rows = [*[f"extend;{d};{d}" for d in range(5)], *[f"retract;{d};{d}" for d in (4, 9, 2, 0)]]
+    curve.write_text("\n".join(["Segment;d [nm];F [µN]", *rows]), "utf-8")
+    table.write_text(
+        "\n".join(["r [nm];f [nm]", *[f"{r};{r * r / 100}" for r in range(9)]]), "utf-8"
+    )
+    options = ["--table", str(table), "--fit", "force_offset", "--e-star", "1e9"]
+    assert main(["fit", str(curve), *options, "--segment", "unloading"]) == 2
+    assert capsys.readouterr().err.startswith(f"mdr fit: {curve}: 6: lies beyond the end")
+
+
 def test_a_fit_by_options_needs_its_curve(capsys: Capture) -> None:
     assert main(["fit", *FIT_OPTIONS]) == 2
     assert "needs the file of its curve" in capsys.readouterr().err

@@ -342,6 +342,20 @@ def test_curve_that_is_deeper_than_the_profile_is_refused() -> None:
         )
 
 
+def test_error_of_a_branch_names_the_point_of_the_whole_curve() -> None:
+    table = mdr.Tabulated(np.linspace(0, 0.05, 20), np.linspace(0, 0.05, 20) ** 2)
+    depth = [0.0, 0.05, 0.1, 0.08, 0.02, 0.0]
+    with pytest.raises(mdr.InputError, match="beyond the end") as error:
+        fit.solve(
+            table,
+            indentation_depth=depth,
+            normal_force=depth,
+            fit=["e_star"],
+            segment="unloading",
+        )
+    assert error.value.path == ("indentation_depth", 3)
+
+
 def test_misfit_by_an_offset_or_by_adhesion_says_so() -> None:
     profile, depth = mdr.Paraboloid(1.0), np.linspace(-5e-3, 1e-2, 200)
     for force, remedy in (

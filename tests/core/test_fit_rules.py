@@ -353,20 +353,33 @@ def test_fit_reaches_minimum_to_rounding_error(size: float) -> None:
     assert fit.solve(BALL, indentation_depth=depth, normal_force=force).error_estimate < 1e-12
 
 
+class Scaled(estimation.Model):
+    """Forces that are the parameters, with slopes that are not numbers beyond a limit."""
+
+    argument = "indentation_depth"
+    best: dict[str, float] = {}  # noqa: RUF012
+
+    def __init__(self, limit: float, *force: float) -> None:
+        self.limit, self.force = limit, np.array(force)
+        self.fit = tuple("ab"[: len(force)])
+
+    def at(self, parameters: dict[str, float]) -> tuple[Array, Array]:
+        x = np.array([parameters[name] for name in self.fit])
+        return x, np.where(x.max() < self.limit, np.eye(x.size), np.nan)
+
+
+EVERYWHERE = dict.fromkeys("ab", (-np.inf, np.inf, 1.0))
+
+
 def test_search_ends_where_residuals_vanish() -> None:
-    bounds = np.array([[-np.inf] * 2, [np.inf] * 2])
-    found = estimation.minimum(lambda x: (np.zeros_like(x), np.eye(2)), np.ones(2), bounds)
-    assert found.tolist() == [1.0, 1.0]
+    exact = {"a": 1.0, "b": 2.0}
+    assert Scaled(np.inf, 1.0, 2.0).minimum(exact, EVERYWHERE) == exact
 
 
 def test_step_beyond_the_model_is_not_taken_and_prints_nothing(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    def model(x: Array) -> tuple[Array, Array]:
-        return x - 1.0, np.full((1, 1), 1.0 if x[0] < 0.5 else np.nan)
-
     stopped = SimpleNamespace(x=np.zeros(1))
     monkeypatch.setattr(estimation, "least_squares", lambda *_, **__: stopped)
-    found = estimation.minimum(model, np.zeros(1), np.array([[-np.inf], [np.inf]]))
-    assert found.tolist() == [0.0]
+    assert Scaled(0.5, 1.0).minimum({"a": 0.0}, EVERYWHERE) == {"a": 0.0}
     assert capfd.readouterr() == ("", "")

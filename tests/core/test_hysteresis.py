@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
-from mdr_core import history, hysteresis, normal
+from mdr_core import history, hysteresis, normal, tangential
 from mdr_core.errors import InputError
 from mdr_core.profiles import Cone, FlatPunch, Paraboloid, Power, Profile, RoundedPunch
 
@@ -98,6 +99,40 @@ def test_energy_is_the_area_of_the_loop() -> None:
         # Two cycles; the trapezoidal rule errs by the square of the step.
         area = np.trapezoid(force, u) / 2
         assert found.dissipated_energy == pytest.approx(area, rel=1e-5, abs=0)
+
+
+@pytest.mark.parametrize("part", [0.8, 2.0])
+@pytest.mark.parametrize("name", ["g_star", "friction_coefficient", "rig_compliance"])
+def test_error_of_the_energy_is_that_of_the_fitted_parameter(name: str, part: float) -> None:
+    contact, u, force = measured(Paraboloid(0.01), part)
+    rig = 0.5 / (2 * G_STAR * float(contact.contact_radius))
+    known = {"g_star": G_STAR, "friction_coefficient": MU, "rig_compliance": rig}
+    loop = u + rig * force
+    given = {each: value for each, value in known.items() if each != name}
+    noisy = force + 1e-3 * force.max() * np.random.default_rng(4).standard_normal(force.size)
+    found = hysteresis.solve(
+        contact, tangential_displacement=loop, tangential_force=noisy, fit=[name], **given
+    )
+
+    def energy(value: float) -> float:
+        g_star, friction, compliance = (known | {name: value}).values()
+
+        def law(x: float) -> tangential.TangentialContact:
+            return tangential.solve(contact, g_star, friction, tangential_displacement=x)
+
+        amplitude = np.ptp(loop) / 2
+        turning = brentq(
+            lambda x: x + compliance * float(law(x).tangential_force) - amplitude,
+            *(0.0, amplitude),
+            xtol=1e-16 * amplitude,
+        )
+        return 4 * float(law(turning).dissipated_energy)
+
+    # The error of a central difference is of the order of the square of the step.
+    value, step = getattr(found, name), 1e-4 * getattr(found, name)
+    slope = (energy(value + step) - energy(value - step)) / (2 * step)
+    expected = abs(slope) * found.standard_errors[0]
+    assert found.dissipated_energy_error == pytest.approx(expected, rel=1e-6, abs=0)
 
 
 @pytest.mark.long

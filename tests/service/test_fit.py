@@ -109,6 +109,31 @@ def test_known_material(client: Client) -> None:
     assert document["contact_point"][0] == pytest.approx(37.0, abs=1.5)
 
 
+def test_yield_strength_warns_at_the_largest_load(client: Client) -> None:
+    # Under Hertz's contact the largest pressure is p = (2 E*/pi) (d/R)^(1/2).
+    depth = np.linspace(0.0, 1e-6, 20)
+    curve = {
+        "profile": {"kind": "paraboloid", "radius": 0.01},
+        "indentation_depth": depth.tolist(),
+        "normal_force": (4 / 3 * 1e9 * np.sqrt(0.01) * depth**1.5).tolist(),
+        "fit": ["contact_point"],
+    }
+    pressure = 2e9 * np.sqrt(1e-4) / np.pi
+
+    def asked(ratio: float, **changed: Any) -> Any:
+        known = {"e_star": 1e9, "poissons_ratio": 0.3, "yield_strength": pressure / ratio}
+        return client.post(PATH, curve | {"material": known} | changed).json()
+
+    # Yield begins at p = 1.61 Y for Poisson's ratio 0.3 by Tresca.
+    for ratio in (1.55, 1.65):
+        codes = [warning["code"] for warning in asked(ratio)["warnings"]]
+        assert ("yield" in codes) == (ratio > 1.61)
+    layer = {"thickness": 1e-3, "base": "frictionless"}
+    for changed in ({"fit": ["contact_point", "work_of_adhesion"]}, {"layer": layer}):
+        pointers = [each["pointer"] for each in asked(1.55, **changed)["errors"]]
+        assert pointers == ["/material/yield_strength"]
+
+
 def test_table_and_picture(client: Client) -> None:
     rows = list(csv.DictReader(io.StringIO(client.post(f"{PATH}?format=csv", query()).text)))
     assert [float(row["indentation_depth"]) for row in rows] == EXAMPLE["indentation_depth"]

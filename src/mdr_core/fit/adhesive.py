@@ -14,8 +14,8 @@ from scipy.special import fdtrc
 from mdr_core import adhesion
 from mdr_core.errors import InputError, Notice
 from mdr_core.estimation import Precision
-from mdr_core.fit.model import LEAST_C, Model, Parameters
-from mdr_core.fit.result import Fit, both, result
+from mdr_core.fit.model import LEAST_C, Model
+from mdr_core.fit.result import Fit, result
 from mdr_core.residuals import ROUNDING
 from mdr_core.typing import Array
 
@@ -41,8 +41,8 @@ _LIMIT: Final = 1.645
 
 def solve(curve: Model) -> Fit:
     """Return the fit, with a warning if its offset and the adhesion compensate each other."""
-    model, found = _touching(curve)
-    fit = _fit(curve, model, found)
+    model = _touching(curve)
+    fit = _fit(curve, model)
     error = fit.standard_errors[fit.fit.index("work_of_adhesion")]
     is_told = not model.touches.all() or fit.work_of_adhesion > _LIMIT * error
     if "force_offset" not in fit.fit or is_told:
@@ -54,56 +54,48 @@ def solve(curve: Model) -> Fit:
     return replace(fit, notices=(*fit.notices, Notice("undetermined", message)))
 
 
-def _fit(curve: Model, model: Model, found: Parameters) -> Fit:
+def _fit(curve: Model, model: Model) -> Fit:
     """Return the fit with adhesion, or with w held at 0 where this is as likely."""
-    least = max(model.squares(found), _rounding(model))
-    without, at_zero = _without_adhesion(model), inf
+    without, excess, place = _without_adhesion(model), inf, model.fit.index("work_of_adhesion")
+    variance = _least(model) / model.free
     # Without adhesion a curve of tension alone does not rise.
     with suppress(InputError):
-        at_zero = without.squares(zero := without.best())
-    excess, place = (at_zero - least) / least * model.free, curve.fit.index("work_of_adhesion")
+        excess = (without.squares - _least(model)) / variance
     if excess > _NO_WORSE:
-        fit = result(model, found)
-        errors, correlation = fit.standard_errors, fit.correlation
-        growth = found["work_of_adhesion"] / sqrt(excess) / errors[place]
+        fit = result(model)
+        growth = fit.work_of_adhesion / sqrt(excess) / fit.standard_errors[place]
         if excess > _FAR or growth <= 1:
             return fit
-        changes = sqrt(growth**2 - 1) * correlation[place] * errors
-        errors, correlation = both(errors, correlation, changes)
-        return replace(fit, standard_errors=errors, correlation=correlation)
+        changes = sqrt(growth**2 - 1) * fit.correlation[place] * fit.standard_errors
+        return replace(fit, effects=np.column_stack([fit.effects, changes]))
     whole = _without_adhesion(curve)
     # The points that are left out may show adhesion.
-    if not _is_noise(without, zero, whole, values := whole.best()):
-        return result(model, found)
-    held = result(whole, values)
-    limit = at_zero + least / model.free * _LIMIT**2
-    work, changes = _largest(without, zero, limit)
-    errors, correlation = both(
-        np.insert(held.standard_errors, place, 0.0),
-        np.insert(np.insert(held.correlation, place, 0.0, axis=0), place, 0.0, axis=1),
-        np.insert(changes, place, work) / _LIMIT,
-    )
+    if not _is_noise(without, whole):
+        return result(model)
+    held = result(whole)
+    work, changes = _largest(without, without.squares + variance * _LIMIT**2)
+    changes = np.insert(changes, place, work) / _LIMIT
+    effects = np.column_stack([np.insert(held.effects, place, 0.0, axis=0), changes])
     message = f"no adhesion is seen: work_of_adhesion is held at 0, and is below {work:.3g} (95 %)"
     return replace(
         held,
         fit=curve.fit,
-        standard_errors=errors,
-        correlation=correlation,
+        effects=effects,
         notices=(*held.notices, Notice("bound", message, work, None)),
     )
 
 
-def _largest(model: Model, zero: Parameters, limit: float) -> tuple[float, Array]:
+def _largest(model: Model, limit: float) -> tuple[float, Array]:
     """Return the largest w within a limit of squares, and how it changes the other parameters.
 
     At w = 0 the slopes in w and in the contact point of a cone are proportional: to the first order
     both would be open.
     """
     low, high, changes = 0.0, -2 * log10(LEAST_C), np.zeros(len(model.fit))
+    unit = model.least_ratio * model.best["e_star"]
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        work = model.least_ratio * zero["e_star"] * 10**middle
-        forces, slopes = model.at(zero | {"work_of_adhesion": work})
+        forces, slopes = model.at(model.best | {"work_of_adhesion": unit * 10**middle})
         squares, left = inf, model.force - forces
         with suppress(InputError):
             precision = Precision.of(slopes, model.fit, "indentation_depth")
@@ -112,100 +104,88 @@ def _largest(model: Model, zero: Parameters, limit: float) -> tuple[float, Array
             high = middle
         else:
             low, changes = middle, precision.changes(left)
-    return model.least_ratio * zero["e_star"] * 10**low, changes
+    return unit * 10**low, changes
 
 
 def _without_adhesion(model: Model) -> Model:
     return replace(model, fit=tuple(name for name in model.fit if name != "work_of_adhesion"))
 
 
-def _is_noise(model: Model, found: Parameters, more: Model, joint: Parameters) -> bool:
-    """Return True if a model of more points, with its fit, leaves no more than their noise."""
+def _is_noise(model: Model, more: Model) -> bool:
+    """Return True if a model of more points leaves no more than their noise."""
     added = max(more.depth.size - model.depth.size, 1)
-    squares = max(model.squares(found), _rounding(model))
-    increase = max(more.squares(joint) - squares, 0.0) / squares * model.free / added
+    squares = _least(model)
+    increase = max(more.squares - squares, 0.0) / squares * model.free / added
     return bool(fdtrc(added, model.free, increase) > _CHANCE)
 
 
-def _rounding(model: Model) -> float:
-    """Return the sum of squares of residuals that are rounding error."""
-    return model.free * (ROUNDING * float(np.abs(model.force).max())) ** 2
+def _least(model: Model) -> float:
+    """Return the sum of squares, at least that of residuals that are rounding error."""
+    rounding = ROUNDING * float(np.abs(model.force).max())
+    return max(model.squares, model.free * rounding**2)
 
 
-def _states(model: Model, found: Parameters) -> adhesion.Curve:
-    c = sqrt(2 * pi * found["work_of_adhesion"] / found["e_star"])
+def _states(model: Model) -> adhesion.Curve:
+    c = sqrt(2 * pi * model.best["work_of_adhesion"] / model.best["e_star"])
     return adhesion.Curve(model.profile, c)
 
 
-def _least_stable(model: Model, found: Parameters) -> float:
+def _least_stable(model: Model) -> float:
     """Return the depth of the least force, less the error of the contact point.
 
     To leave out points up to the least of noisy forces, which is low by chance, would bias the fit.
     About the depth of the least force the force hardly changes.
     """
-    states = _states(model, found)
-    depth = found["contact_point"] + float(states.load("indentation_depth", states.at_pull_off))
+    states = _states(model)
+    depth = float(states.load("indentation_depth", states.at_pull_off))
+    depth += model.best["contact_point"]
     if "contact_point" not in model.fit:
         return depth
-    deviations = Precision.of(model.at(found)[1], model.fit, "indentation_depth").deviations
-    scatter = sqrt(model.squares(found) / model.free)
-    return depth - _NEAR * scatter * float(deviations[model.fit.index("contact_point")])
+    effects = model.precision.effects[model.fit.index("contact_point")]
+    return depth - _NEAR * model.scatter * float(np.linalg.norm(effects))
 
 
-def _touching(curve: Model) -> tuple[Model, Parameters]:
-    """Return the model of the states beyond the least force and after the pull-off, and its fit.
+def _touching(curve: Model) -> Model:
+    """Return the model of the states beyond the least force and after the pull-off.
 
     Points after the pull-off are all before the largest jump, if they fit the other states within
     the noise; else those well below the pull-off depth of a fit of these, or below the contact
     point of a fit without adhesion. States in contact alone leave the pull-off depth open in noise,
     as offset, adhesion and contact point compensate.
     """
-    order = np.argsort(curve.depth, kind="stable")
-    depth, force, drift_error = (
-        each[order] for each in (curve.depth, curve.force, curve.drift_error)
-    )
+    curve = curve.of(np.argsort(curve.depth, kind="stable"))
+    depth, force = curve.depth, curve.force
     least = int(np.argmin(force)) + 1
     curve.require_points(depth.size - least)
 
-    def with_detached(count: int, first: int) -> Model:
-        used = np.r_[:count, first : depth.size]
-        return replace(
-            curve,
-            depth=depth[used],
-            force=force[used],
-            drift_error=drift_error[used],
-            touches=used >= count,
-        )
+    def extended(model: Model, count: int, first: int) -> Model:
+        """Return a model of more points, of which the first `count` are after the pull-off.
 
-    def extended(
-        model: Model, found: Parameters, count: int, first: int
-    ) -> tuple[Model, Parameters]:
-        """Return a model of more points, if these are within the noise, or the given one."""
-        more = with_detached(count, first)
+        The given model is returned if they are not within the noise.
+        """
+        used = np.r_[:count, first : depth.size]
+        more = replace(curve.of(used), touches=used >= count)
         with suppress(InputError):
-            if _is_noise(model, found, more, joint := more.best()):
-                return more, joint
-        return model, found
+            return more if _is_noise(model, more) else model
+        return model
 
     jump = int(np.argmin(np.diff(force[:least]))) + 1 if least > 1 else 0
-    model = with_detached(0, least)
-    found = model.best()
+    model = beyond = curve.of(np.arange(least, depth.size))
     if jump >= _DETACHED:
-        whole, joint = extended(model, found, jump, least)
-        drop = -joint["e_star"] * _states(curve, joint).least["normal_force"]
-        if whole is not model and drop > _SEEN * sqrt(whole.squares(joint) / whole.free):
-            model, found = whole, joint
-    if model.touches.all():
-        pull_off = _states(curve, found).least["indentation_depth"]
-        ends = [found["contact_point"] + _AFTER * pull_off]
+        whole = extended(beyond, jump, least)
+        drop = -whole.best["e_star"] * _states(whole).least["normal_force"]
+        model = whole if drop > _SEEN * whole.scatter else beyond
+    if model is beyond:
+        pull_off = _states(beyond).least["indentation_depth"]
+        ends = [beyond.best["contact_point"] + _AFTER * pull_off]
         # Noise that hides the pull-off leaves the contact point open, unless adhesion is left out.
         without = _without_adhesion(curve)
         with suppress(InputError):
-            ends.append(_least_stable(without, without.best()))
+            ends.append(_least_stable(without))
         for after in np.searchsorted(depth, ends).tolist():
-            if model.touches.all() and after >= _DETACHED:
-                model, found = extended(model, found, after, max(after, least))
+            if model is beyond and after >= _DETACHED:
+                model = extended(beyond, after, max(after, least))
     count = int(np.sum(~model.touches))
-    near = int(np.searchsorted(depth, _least_stable(model, found)))
+    near = int(np.searchsorted(depth, _least_stable(model)))
     first = max(near, jump, count)
-    return extended(model, found, count, first) if first < least else (model, found)
+    return extended(model, count, first) if first < least else model

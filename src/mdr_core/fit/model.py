@@ -9,17 +9,18 @@ Source: notes, §15.
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import inf, pi, sqrt
-from typing import Final
+from typing import ClassVar, Final, Self
 
 import numpy as np
 
-from mdr_core import adhesion, normal
+from mdr_core import adhesion, estimation, normal
 from mdr_core.errors import InputError
-from mdr_core.estimation import minimum
+from mdr_core.estimation import Parameters, linear
 from mdr_core.layer import DepthCurve
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array, Flags
+from mdr_core.typing import Array, Flags, Indices
 
 PARAMETERS: Final = ("e_star", "contact_point", "force_offset", "work_of_adhesion")
 """Quantities that can be fitted."""
@@ -36,12 +37,9 @@ _GRID: Final = 500
 # without adhesion to rounding, and has its slope in w.
 LEAST_C: Final = 1e-6
 
-Parameters = dict[str, float]
-"""Values of `PARAMETERS` by name."""
-
 
 @dataclass(frozen=True, eq=False)
-class Model:
+class Model(estimation.Model):
     """Curve, and the model that is fitted to it."""
 
     profile: Profile
@@ -59,10 +57,7 @@ class Model:
     drift_error: Array
     """Standard error of the subtracted drift at each point [length]."""
 
-    @property
-    def free(self) -> int:
-        """Degrees of freedom of the residuals."""
-        return self.depth.size - len(self.fit)
+    argument: ClassVar[str] = "indentation_depth"
 
     @property
     def deepest(self) -> float:
@@ -87,6 +82,11 @@ class Model:
         """Least w/E* that is fitted [length]."""
         return LEAST_C**2 * float(np.ptp(self.depth)) / (2 * pi)
 
+    def of(self, points: Indices) -> Self:
+        """Return the model of a part of the points, in their order."""
+        names = "depth", "force", "drift_error", "touches"
+        return replace(self, **{name: getattr(self, name)[points] for name in names})
+
     def require_points(self, touching: int) -> None:
         """Raise InputError unless more points are in contact than parameters are fitted."""
         if touching <= len(self.fit):
@@ -97,46 +97,43 @@ class Model:
             detail = f"too few points are in contact, {touching}: {remedy}"
             raise InputError(("indentation_depth",), detail)
 
-    def reduced(self, pressed: Array, ratio: float) -> tuple[Array, Array, Array]:
-        """Return forces over E*, and their slopes in the depth and in w/E*.
+    def reduced(self, pressed: Array, ratio: float) -> Array:
+        """Return forces over E*, and their slopes in the depth and in w/E*, shape (3, ...).
 
         With adhesion, depths below the depth of the least force have the least force.
 
         Parameters: the depths from first contact, and w/E* [length].
         """
+        found = np.zeros((3, *pressed.shape))
         if ratio:
-            return self._adhesive(pressed, ratio)
-        depth = np.maximum(pressed, 0.0)
-        if self.on_layer is not None:
-            force, slope = self.on_layer(depth)
+            c = sqrt(2 * pi * ratio)
+            # A contact that would spread beyond the profile fits nothing.
+            with suppress(InputError):
+                curve = adhesion.Curve(self.profile, c)
+                ends = np.array([curve.at_pull_off, curve.stable["indentation_depth"][1][-1]])
+                held = np.clip(pressed, *curve.load("indentation_depth", ends))
+                edge, _ = curve.outermost("indentation_depth", held)
+                a = self.profile.contact_radius(edge)
+                # dF/dd = 2 E* (a - steep), and dF/dc = -2 E* a^(1/2) steep at the same depth.
+                steep = a / curve.excess(0.5, edge)
+                by_ratio = -2 * np.sqrt(a) * steep * pi / c
+                found[:] = curve.load("normal_force", edge), 2 * (a - steep), by_ratio
         else:
-            contact = normal.solve(self.profile, 1.0, indentation_depth=depth)
-            force, slope = contact.normal_force, contact.normal_stiffness
-        force, slope = np.where(pressed > 0, [force, slope], 0.0)
-        return force, slope, np.zeros_like(slope)
-
-    def _adhesive(self, pressed: Array, ratio: float) -> tuple[Array, Array, Array]:
-        force, by_depth, by_ratio = np.zeros((3, *pressed.shape))
-        c = sqrt(2 * pi * ratio)
-        at = self.touches if pressed.shape == self.touches.shape else np.ones(pressed.shape, bool)
-        # A contact that would spread beyond the profile fits nothing.
-        with suppress(InputError):
-            curve = adhesion.Curve(self.profile, c)
-            ends = np.array([curve.at_pull_off, curve.stable["indentation_depth"][1][-1]])
-            held = np.clip(pressed[at], *curve.load("indentation_depth", ends))
-            edge, _ = curve.outermost("indentation_depth", held)
-            a = self.profile.contact_radius(edge)
-            # dF/dd = 2 E* (a - steep), and dF/dc = -2 E* a^(1/2) steep at the same depth.
-            steep = a / curve.excess(0.5, edge)
-            force[at] = curve.load("normal_force", edge)
-            by_depth[at], by_ratio[at] = 2 * (a - steep), -2 * np.sqrt(a) * steep * pi / c
-        return force, by_depth, by_ratio
+            depth = np.maximum(pressed, 0.0)
+            if self.on_layer is not None:
+                force, slope = self.on_layer(depth)
+            else:
+                contact = normal.solve(self.profile, 1.0, indentation_depth=depth)
+                force, slope = contact.normal_force, contact.normal_stiffness
+            found[:2] = np.where(pressed > 0, [force, slope], 0.0)
+        return found
 
     def at(self, parameters: Parameters) -> tuple[Array, Array]:
         """Return the forces of the model, and their slopes in the fitted parameters."""
         e_star, d0, offset, work = (parameters[name] for name in PARAMETERS)
         ratio = work / e_star
-        forces, by_depth, by_ratio = self.reduced(self.depth - d0, ratio)
+        reduced = self.reduced(self.depth - d0, ratio)
+        forces, by_depth, by_ratio = np.where(self.touches, reduced, 0.0) if ratio else reduced
         columns = {
             # At constant w.
             "e_star": forces - ratio * by_ratio,
@@ -147,25 +144,13 @@ class Model:
         slopes = np.reshape([columns[name] for name in self.fit], (len(self.fit), forces.size)).T
         return e_star * forces + offset, slopes
 
-    def squares(self, parameters: Parameters) -> float:
-        """Return the sum of squares of the residuals."""
-        return float(np.sum(np.square(self.at(parameters)[0] - self.force)))
-
     def linear(self, reduced: Array) -> tuple[Array, Array, Array]:
         """Return the least squares, moduli and offsets for forces over E*, shape (..., k)."""
-        mean, middle = np.zeros_like(reduced[..., :1]), 0.0
-        if "force_offset" in self.fit:
-            mean, middle = reduced.mean(axis=-1, keepdims=True), float(self.force.mean())
-        x, y = reduced - mean, self.force - middle
-        modulus = np.full(mean.shape, self.e_star or 0.0)
-        if self.e_star is None:
-            size = np.sum(x * x, axis=-1, keepdims=True)
-            modulus = np.sum(x * y, axis=-1, keepdims=True) / np.where(size, size, 1.0)
-        squares = np.sum(np.square(y - modulus * x), axis=-1)
-        return squares, modulus[..., 0], middle - (modulus * mean)[..., 0]
+        return linear(reduced, self.force, self.e_star, with_offset="force_offset" in self.fit)
 
+    @cached_property
     def best(self) -> Parameters:
-        """Return the parameters of the least sum of squares, or an InputError."""
+        """Parameters of the least sum of squares, or an InputError."""
         low, high = float(self.depth.min()), float(self.depth.max())
         if low == high:
             raise InputError(("indentation_depth",), "must hold different depths in contact")
@@ -180,54 +165,31 @@ class Model:
             reached = normal.solve(self.profile, 1.0, indentation_depth=most)
             ratios = (_RETRACTIONS * (high - low)) ** 2 / (2 * pi * reached.contact_radius)
         some = np.argsort(self.depth)[:: max(1, self.depth.size // _POINTS)]
-        used = {name: getattr(self, name)[some] for name in ("depth", "force", "touches")}
-        coarse = replace(self, **used)
+        coarse = self.of(some)
         pressed = coarse.depth - tried[:, None]
         grid = np.linspace(pressed.min(), pressed.max(), _GRID)
-        found = []
-        for ratio in ratios.tolist():
-            if ratio:
-                forces = np.interp(pressed, grid, coarse.reduced(grid, ratio)[0])
-                forces = np.where(coarse.touches, forces, 0.0)
-            else:
-                forces = coarse.reduced(pressed, ratio)[0]
-            squares, modulus, offset = coarse.linear(forces)
-            place = int(squares.argmin())
-            values = modulus[place], tried[place], offset[place], ratio * modulus[place]
-            found.append((squares[place], dict(zip(PARAMETERS, map(float, values), strict=True))))
-        _, start = min(found, key=lambda each: each[0])
+
+        def forces(ratio: float) -> Array:
+            if not ratio:
+                return coarse.reduced(pressed, ratio)[0]
+            return coarse.touches * np.interp(pressed, grid, coarse.reduced(grid, ratio)[0])
+
+        squares, moduli, offsets = coarse.linear(np.array([*map(forces, ratios.tolist())]))
+        at = np.unravel_index(squares.argmin(), squares.shape)
+        values = moduli[at], tried[at[1]], offsets[at], ratios[at[0]] * moduli[at]
+        start = dict(zip(PARAMETERS, map(float, values), strict=True))
         if start["e_star"] <= 0:
             detail = "does not rise as on this profile: compression is positive, reverse its sign"
             raise InputError(("normal_force",), detail)
-        return self._refined(start, limit, high) if self.fit else start
-
-    @np.errstate(all="ignore")
-    def _refined(self, start: Parameters, low: float, high: float) -> Parameters:
-        """Return the parameters of the nearest minimum.
-
-        Parameters
-        ----------
-        start : parameters from which the search starts.
-        low, high : limits of the contact point [length].
-        """
+        if not self.fit:
+            return start
         size = float(np.abs(self.force).max()) or 1.0
-        units = start | {"contact_point": float(np.ptp(self.depth)), "force_offset": size}
-        unit = np.array([units[name] for name in self.fit])
-        ends = {"contact_point": (low, high), "force_offset": (-inf, inf)}
-        ends["work_of_adhesion"] = self.least_ratio * start["e_star"], inf
-        bounds = np.transpose([ends.get(name, (0.0, inf)) for name in self.fit]) / unit
-        first = np.array([start[name] for name in self.fit]) / unit
-
-        def values(x: Array) -> Parameters:
-            return start | dict(zip(self.fit, (x * unit).tolist(), strict=True))
-
-        def residual_and_slopes(x: Array) -> tuple[Array, Array]:
-            forces, slopes = self.at(values(x))
-            return (forces - self.force) / size, slopes * unit / size
-
-        with suppress(ValueError, ZeroDivisionError, np.linalg.LinAlgError):
-            found = minimum(residual_and_slopes, first, bounds)
-            if np.isfinite(found).all():
-                return values(found)
-        detail = "does not determine the parameters: measure deeper, or fit fewer of them"
-        raise InputError(("indentation_depth",), detail)
+        bounds = {
+            "e_star": (0.0, inf, start["e_star"]),
+            "contact_point": (limit, high, high - low),
+            "force_offset": (-inf, inf, size),
+            "work_of_adhesion": (
+                *(self.least_ratio * start["e_star"], inf, start["work_of_adhesion"]),
+            ),
+        }
+        return self.minimum(start, bounds)

@@ -13,8 +13,8 @@ from mdr_core import adhesion, normal, residuals, validity
 from mdr_core import layer as layers
 from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
-from mdr_core.estimation import LeastSquaresFit, Precision
-from mdr_core.fit.model import PARAMETERS, Model, Parameters
+from mdr_core.estimation import LeastSquaresFit
+from mdr_core.fit.model import PARAMETERS, Model
 from mdr_core.materials import Material
 from mdr_core.normal import NormalContact
 from mdr_core.residuals import ROUNDING
@@ -25,7 +25,7 @@ _LOPSIDED: Final = 1.5
 # Growth of a standard error without a single point: at most 1.9 in curves of six points whose
 # noise is white, and 4.6 (median) where one point is taken for the pull-off.
 _ONE_POINT: Final = 2.5
-_REMEDIES: Final = {
+_CAUSES: Final = {
     "misfit": "the shape, the range of the fit or the model is wrong",
     "two_branches": "loading and unloading differ: give the segment to fit",
     "noise_grows": "two branches sorted by depth, or noise that grows with the force: keep the "
@@ -82,24 +82,19 @@ class Fit(LeastSquaresFit):
         return *found, *self.notices
 
 
-def result(model: Model, found: Parameters) -> Fit:
+def result(model: Model) -> Fit:
     """Return the fit with the best parameters, or an InputError."""
-    forces, slopes = model.at(found)
+    found, residual, (forces, _) = model.best, model.residual, model.fitted
     model.require_points(int(np.sum(forces != found["force_offset"])))
-    residual = model.force - forces
-    # The model is exact to rounding.
-    scatter = max(
-        float(np.sqrt(np.sum(np.square(residual)) / model.free)), EPS * float(np.abs(forces).max())
-    )
-    precision = Precision.of(slopes, model.fit, "indentation_depth")
-    contact = _deepest(model, found)
-    interpolated = 0.0 if model.on_layer is None else model.on_layer.error
-    code, misfit = _misfit(model, precision.q, residual)
-    errors, correlation = (model.noise or scatter) * precision.deviations, precision.correlation
+    precision, noise = model.precision, model.noise or model.scatter
+    effects = noise * precision.effects
     if model.drift_error.any():
         _, by_contact_point = replace(model, fit=("contact_point",)).at(found)
         by_drift = precision.changes(by_contact_point[:, 0] * model.drift_error)
-        errors, correlation = both(errors, correlation, by_drift)
+        effects = np.column_stack([effects, by_drift])
+    contact = _deepest(model)
+    interpolated = 0.0 if model.on_layer is None else model.on_layer.error
+    misfit, doubts = _misfit(model)
     return Fit(
         fit=model.fit,
         normal=contact,
@@ -108,32 +103,18 @@ def result(model: Model, found: Parameters) -> Fit:
         contact_point=found["contact_point"],
         force_offset=found["force_offset"],
         work_of_adhesion=found["work_of_adhesion"],
-        standard_errors=errors,
-        correlation=correlation,
+        effects=effects,
         residual=residual,
-        noise=model.noise or scatter,
+        noise=noise,
         misfit=misfit,
         error_estimate=precision.error(contact.error_estimate + interpolated, residual, forces),
-        notices=(
-            *_doubts(model, code, misfit),
-            *_open(model, found, scatter, precision),
-            *_decided_by_one(model, precision),
-        ),
+        notices=(*doubts, *_open(model), *_decided_by_one(model)),
     )
 
 
-def both(errors: Array, correlation: Array, changes: Array) -> tuple[Array, Array]:
-    """Return standard errors and correlation with those of one more error, of given changes."""
-    sums = np.hypot(errors, changes)
-    shares = np.outer(errors / sums, errors / sums), np.outer(changes / sums, changes / sums)
-    correlation = correlation * shares[0] + shares[1]
-    np.fill_diagonal(correlation, 1.0)
-    return sums, correlation
-
-
-def _deepest(model: Model, found: Parameters) -> NormalContact:
+def _deepest(model: Model) -> NormalContact:
     """Return the contact at the largest depth of the curve."""
-    layer = None if model.on_layer is None else model.on_layer.layer
+    found, layer = model.best, None if model.on_layer is None else model.on_layer.layer
     material = Material(found["e_star"], body_thickness=model.body_thickness, layer=layer)
     depth = max(float(model.depth.max()) - found["contact_point"], 0.0)
     if work := found["work_of_adhesion"]:
@@ -142,58 +123,49 @@ def _deepest(model: Model, found: Parameters) -> NormalContact:
     return solve(model.profile, material, indentation_depth=depth)
 
 
-def _misfit(model: Model, q: Array, residual: Array) -> tuple[str, float]:
-    """Return the likeliest fault of the residuals, and the probability of such by chance.
+def _misfit(model: Model) -> tuple[float, tuple[Notice, ...]]:
+    """Return the probability of such residuals by chance, and the warning if it is low.
 
     With a known noise the sum of squares is compared with the distribution of chi^2 as well.
     """
-    found = residuals.misfit(model.depth, q, residual, model.force)
+    found = residuals.misfit(model.depth, model.precision.q, model.residual, model.force)
     if model.noise is not None:
-        squares = float(np.sum(np.square(residual / model.noise)))
+        squares = float(np.sum(np.square(model.residual / model.noise)))
         by_size = 2 * float(chdtrc(model.free, squares))
         found["misfit"] = min(found.get("misfit", 1.0), by_size)
-    return residuals.worst(found)
-
-
-def _doubts(model: Model, code: str, misfit: float) -> tuple[Notice, ...]:
-    """Return the warning about the residuals, if there is one."""
     # The work of adhesion is not fitted on a layer, nor under a flat punch.
     is_open = model.on_layer is None and not model.profile.is_flat_punch
     possible = PARAMETERS[2:] if is_open else PARAMETERS[2:3]
     left = " and ".join(name for name in possible if name not in model.fit)
-    remedy = f"; fit {left} too, if the curve has them" if left and code == "misfit" else ""
-    return residuals.doubts(code, misfit, _REMEDIES[code], remedy)
+    return residuals.judged(found, _CAUSES, left and f"; fit {left} too, if the curve has them")
 
 
-def _open(
-    model: Model, found: Parameters, scatter: float, precision: Precision
-) -> tuple[Notice, ...]:
+def _open(model: Model) -> tuple[Notice, ...]:
     """Return the warning that the interval of the contact point is not that of its error.
 
     At its ends the least squares for a given contact point exceed the minimum by the quantile of
     the F-distribution. Raises InputError if it has no end.
     """
+    scatter = model.scatter
     is_exact = scatter <= ROUNDING * float(np.abs(model.force).max())
     if "contact_point" not in model.fit or "work_of_adhesion" in model.fit or is_exact:
         return ()
-    point, free = found["contact_point"], model.free
+    point, place, free = model.best["contact_point"], model.fit.index("contact_point"), model.free
     quantile = float(stdtrit(free, 0.975))
-    half = quantile * scatter * float(precision.deviations[model.fit.index("contact_point")])
+    half = quantile * scatter * float(np.linalg.norm(model.precision.effects[place]))
     least = free * scatter**2 * (1 + quantile**2 / free)
 
-    def within(place: float) -> bool:
-        reduced, *_ = model.reduced(model.depth - place, 0.0)
-        return bool(model.linear(reduced)[0] <= least)
-
-    if within(model.farthest):
+    far, halves = model.farthest, half * np.multiply.outer([1 / _LOPSIDED, _LOPSIDED], [-1, 1])
+    places = np.maximum(np.append(far, point + halves), far)
+    reduced = model.reduced(model.depth - places[:, None], 0.0)[0]
+    within = model.linear(reduced)[0] <= least
+    if within[0]:
         detail = (
             "does not determine contact_point: start the curve nearer to it, fit fewer "
             "parameters, or give a longer profile"
         )
         raise InputError(("indentation_depth",), detail)
-    ends = [point + sign * half * _LOPSIDED for sign in (-1, 1)]
-    nearer = [point + sign * half / _LOPSIDED for sign in (-1, 1)]
-    if all(map(within, nearer)) and not any(within(max(end, model.farthest)) for end in ends):
+    if within[1:3].all() and not within[3:].any():
         return ()
     message = (
         "the curve hardly determines contact_point: its interval is lopsided, and those of the "
@@ -202,15 +174,17 @@ def _open(
     return (Notice("undetermined", message),)
 
 
-def _decided_by_one(model: Model, precision: Precision) -> tuple[Notice, ...]:
+def _decided_by_one(model: Model) -> tuple[Notice, ...]:
     """Return the warning of a point without which a standard error would grow most.
 
     Without point i the error of parameter j grows by (1 + (C J^T)_ji^2/(C_jj (1 - h_i)))^(1/2).
     """
     if not model.fit:
         return ()
-    rest = np.maximum(1 - np.sum(precision.q**2, axis=1), EPS)
-    growth = np.sqrt(1 + np.square(precision.unit_rows @ precision.q.T) / rest)
+    q, inverse = model.precision.q, model.precision.inverse
+    rest = np.maximum(1 - np.sum(q**2, axis=1), EPS)
+    parts = inverse / np.linalg.norm(inverse, axis=1)[:, None]
+    growth = np.sqrt(1 + np.square(parts @ q.T) / rest)
     place, point = np.unravel_index(int(growth.argmax()), growth.shape)
     largest = float(growth[place, point])
     if largest <= _ONE_POINT:

@@ -21,7 +21,7 @@ from mdr_core.layer import DepthCurve
 from mdr_core.layer.equation import require_flat_within
 from mdr_core.materials import RIGID, Body, Layer, from_bodies
 from mdr_core.profiles import Profile
-from mdr_core.typing import Array, Flags
+from mdr_core.typing import Array, Indices
 from mdr_core.validation import (
     as_curve,
     require_finite,
@@ -115,9 +115,8 @@ def solve(
     drift_error = np.zeros(depth.size)
     if subtracted and times is not None:
         depth, drift_error = depth - subtracted.rate * times, subtracted.error * times
-    if segment is not None:
-        used = _of_segment(kinds, segment)
-        depth, force, drift_error = depth[used], force[used], drift_error[used]
+    points = np.arange(depth.size) if segment is None else _of_segment(kinds, segment)
+    depth, force, drift_error = depth[points], force[points], drift_error[points]
     _require_rise(depth, force)
     require_fitted(fit, PARAMETERS, {"e_star": e_star})
     for name, value in (("e_star", e_star), ("noise", noise)):
@@ -127,7 +126,7 @@ def solve(
         detail = "holds work_of_adhesion, on which only the pull-off of a flat punch depends"
         raise InputError(("fit",), detail)
     if "contact_point" not in fit and depth.max() > profile.largest_loads[0]:
-        place = ("indentation_depth", int(depth.argmax()))
+        place = ("indentation_depth", int(points[depth.argmax()]))
         raise InputError(place, "lies beyond the end of the profile: give a longer one")
     if layer is not None and layer.poissons_ratio is None:
         layer = replace(layer, poissons_ratio=poissons_ratio)
@@ -136,7 +135,7 @@ def solve(
     known = e_star, touches, on_layer, noise, body_thickness, drift_error
     model = Model(profile, depth, force, tuple(fit), *known)
     is_adhesive = "work_of_adhesion" in fit
-    found = adhesive.solve(model) if is_adhesive else result(model, model.best())
+    found = adhesive.solve(model) if is_adhesive else result(model)
     if subtracted:
         found = replace(found, drift_rate=subtracted.rate, drift_rate_error=subtracted.error)
     return found if poissons_ratio is None else _of_sample(found, poissons_ratio, indenter)
@@ -228,14 +227,14 @@ def _drift(
     return found
 
 
-def _of_segment(kinds: NDArray[np.str_], segment: str) -> Flags:
-    """Return True for the points of a branch, or an InputError if there are none."""
+def _of_segment(kinds: NDArray[np.str_], segment: str) -> Indices:
+    """Return the points of a branch, or an InputError if there are fewer than two."""
     if segment not in _SEGMENTS:
         raise InputError(("segment",), f"must be one of {', '.join(_SEGMENTS)}")
-    used = kinds == segment
-    if np.sum(used) < 2:
+    points = np.flatnonzero(kinds == segment)
+    if points.size < 2:
         raise InputError(("segment",), f"is not in the curve: there is no {segment}")
-    return used
+    return points
 
 
 def _require_rise(depth: Array, force: Array) -> None:

@@ -286,9 +286,10 @@ def _model_errors(source: Any, loads: int) -> Result:
 
 def yields(query: Query, source: Any) -> list[validity.Finding]:
     """Return the finding `yield` of the bodies of a query with a yield strength."""
-    if isinstance(source, Fit) or not query.material.has("yield_strength"):
+    # The material of a fit can be left out.
+    if not query.has("material") or not query.material.has("yield_strength"):
         return []
-    pressed = source.normal if isinstance(source, Impact) else source.solved
+    pressed = source.normal if isinstance(source, Fit | Impact) else source.solved
     ratios = query.material.effective.poissons_ratios
     return [subsurface.yield_finding(pressed, ratios, query.material.yield_strength)]
 

@@ -4,6 +4,7 @@ from mdr_core import adhesion, fit, hysteresis, normal
 from mdr_core.errors import InputError
 from mdr_core.fit import Fit
 from mdr_core.hysteresis import LoopFit
+from mdr_core.layer import LayerContact
 from mdr_service.queries.contacts import ADHESION, body, pointing, profile, require_one_of
 from mdr_service.schemas.contacts import as_body
 from mdr_service.schemas.fits import FitQuery, LoopQuery
@@ -30,6 +31,11 @@ def solve_fit(query: FitQuery) -> Fit:
         detail = "is not an input of a fit: add work_of_adhesion to fit to determine it"
         raise InputError(("material", "work_of_adhesion"), detail)
     known = query.material if query.has("material") else None
+    if known and known.has("yield_strength"):
+        if query.has("layer") or known.has("layer"):
+            raise InputError(("material", "yield_strength"), LayerContact.unusable)
+        if "work_of_adhesion" in query.fit:
+            raise InputError(("material", "yield_strength"), adhesion.AdhesiveContact.unusable)
     return fit.solve(
         profile(query.profile),
         e_star=known.effective.e_star if known else None,
