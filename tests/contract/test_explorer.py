@@ -106,7 +106,7 @@ def test_limits_of_the_model_are_shown_in_one_line(visit: Visit) -> None:
     strength = float(f"{0.620 * 1.5 * 100 / (math.pi * a**2) / 1e6:.2g}")
     line = visit.page.locator("#accuracy p").first.inner_text()
     expected = (
-        rf"Within 1 %: adhesion below {work:.2g} N/m, "
+        rf"Left-out effects change the results by at most 1 %: adhesion below {work:.2g} N/m, "
         rf"tangential force below {1 - 0.98**3:.2g} µF_N, thickness above [\d.]+ mm, "
         rf"yield strength above {strength:g} MPa [(]body 1 has 250 MPa: it yields[)][.]"
     )
@@ -531,7 +531,7 @@ def test_file_with_too_many_points_is_thinned(visit: Visit, tmp_path: Path) -> N
     file.write_text("Weg [µm];Höhe [nm]\n" + "\n".join(rows), "cp1252")
     visit.page.set_input_files("#file", file)
     problem = visit.page.locator("#problem-table")
-    problem.get_by_text("4500 points, of which the service takes 2000").wait_for()
+    problem.get_by_text("4500 points; the service takes at most 2000").wait_for()
     with visit.changing():
         visit.page.click("#table-fields .thin")
     assert visit.page.locator("#table-note").inner_text() == "1500 points."
@@ -710,7 +710,7 @@ def test_strength_follows_the_material(visit: Visit) -> None:
             visit.page.select_option(f"#field-material-{body}", "Aluminium 6061-T6")
     assert visit.page.get_attribute("#field-yield2", "placeholder") == "276"
     expected = hertz_yield(0.01, 7e10, 0.33, 2.76e8)
-    shown = visit.number("Yield begins at, von Mises").split()
+    shown = visit.number("Normal force at onset of yield, von Mises").split()
     assert shown[1] == "N"
     assert float(shown[0]) == pytest.approx(expected, rel=1e-3, abs=0)
     # A strength of the user's own goes with its material, too.
@@ -726,7 +726,7 @@ def test_strength_follows_the_material(visit: Visit) -> None:
     visit.fill("e1", "190,5")
     assert visit.page.input_value("#field-material-1") == "Custom"
     assert visit.page.get_attribute("#field-yield1", "placeholder") == "needed"
-    assert visit.number("Yield begins at, von Mises") == "needs a yield strength"
+    assert visit.number("Normal force at onset of yield, von Mises") == "needs a yield strength"
 
 
 def test_mass_follows_radius_and_material(visit: Visit) -> None:

@@ -40,7 +40,7 @@ export function showAccuracy({ responses, lines = [] }, notes, inputs, labels) {
   const data = responses.find((response) => response.data_error)?.data_error.at(-1);
   const byPoints = data ? ` The points of the table leave an error of about ${format(100 * data, 2)} % of depth and force.` : "";
   const accuracy =
-    `Computed by ${methods.join(" and ")}; estimated relative error ${quantity(error, "1", inputs, 2)}${ofFields}. ` +
+    `Computed by ${methods.join(" and ")}; estimated relative numerical error ${quantity(error, "1", inputs, 2)}${ofFields}. ` +
     `The model itself errs by ${model < 100 ? "about" : "over"} ${format(model, 2)} %.${byPoints}`;
   const sources = `Sources: ${[...new Set(responses.flatMap((response) => response.sources))].join("; ")}.`;
   $("#accuracy").replaceChildren(
@@ -103,7 +103,7 @@ export function showProblem(error, inputs, labels) {
   document.querySelectorAll(".field:has(.problem)").forEach((field) => mark(field, ""));
   box.hidden = !error;
   if (!error) return;
-  const { title = "The page has an error", errors = [] } = error.problem ?? {};
+  const { title = "Error in the page", errors = [] } = error.problem ?? {};
   const found = errors.map((each) => placed(each, inputs, labels));
   for (const { field, text } of found) if (field) mark(field, text);
   const detail = found.length ? found.map(({ message }) => message).join("; ") : inWords(error.message, inputs, labels);

@@ -99,7 +99,7 @@ export function limitWords({ holds_while: limits, normal_force: forces }, within
     const yields = effect === "yield" ? yieldWords(value, inputs) : "";
     return `${label} ${below ? "below" : "above"} ${size}${isShare ? " µF_N" : ""}${yields}`;
   });
-  return force > 0 ? `Within ${100 * within} %: ${words.join(", ")}.` : "";
+  return force > 0 ? `Left-out effects change the results by at most ${100 * within} %: ${words.join(", ")}.` : "";
 }
 
 /** Return a sentence about the largest stresses on the axis, if they lie beneath the surface. */
