@@ -209,7 +209,7 @@ def _decoded(content: bytes) -> str:
 def parse(content: bytes, kind: Sequence[str], columns: Sequence[int] | None = None) -> ParsedFile:
     """Return the table of a file, a `PROFILE` or a `CURVE`, as it is written, or an InputError.
 
-    `columns` are the numbers of the two columns, from 1, where headings do not tell them.
+    `columns` are the numbers of the two columns, from 1, if the headings do not identify them.
     """
     lines = _lines(_decoded(content))
     last = next((text for _, comment, text in reversed(lines) if text and not comment), "")

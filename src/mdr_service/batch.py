@@ -14,8 +14,8 @@ class BatchItem(Strict):
     """Query of a batch."""
 
     ask: str = Field(
-        description="Name of the query, as its path ends: `fit` is that of `/v1/normal/fit`, "
-        "`tangential_fit` of `/v1/tangential/fit`.",
+        description="Name of the query, the end of its path; `fit` means `/v1/normal/fit`, and "
+        "`tangential_fit` means `/v1/tangential/fit`.",
         json_schema_extra={"enum": [*QUERIES]},
     )
     request: dict[str, Any] = Field(

@@ -25,7 +25,7 @@ _Regime = Annotated[
     Field(description="Slip regime: `stick`, `partial_slip` or `full_slip`."),
 ]
 _NULL = "null where infinite, with a warning `singular`"
-_ROUND = "under a given force by the model, of round bodies or a given thickness"
+_ROUND = "under a given force by the model, for round bodies or a given thickness"
 _UNBOUNDED = "null if wear is unbounded"
 
 
@@ -39,11 +39,11 @@ class AnswerWarning(Answer):
     """Warning about a response, for example that a limit of validity is exceeded."""
 
     code: str = Field(description="Stable name of the warning.")
-    message: str = Field(description="Explanation in this case.")
-    value: float | None = Field(description="Size of the finding, null where it has none.")
+    message: str = Field(description="Explanation for this case.")
+    value: float | None = Field(description="Value compared with `limit`, or null.")
     limit: float | None = Field(
-        description="Limit beyond which the warning is raised, a lower one of probabilities and of "
-        "`jkr_range`; null where it has none."
+        description="Limit beyond which the warning is raised (below it for probabilities and "
+        "`jkr_range`), or null."
     )
     instead: Remedy | None = Field(description="Remedy, null where there is none.")
 
@@ -56,7 +56,7 @@ class HoldsWhile(Answer):
     )
     quantity: str = Field(description="Quantity that is limited.")
     below: list[float] = _limit("Largest value", default=None)
-    above: list[float] = _limit("Least value", default=None)
+    above: list[float] = _limit("Smallest value", default=None)
     changes: str = Field(description="Result that changes by `holds_within` at the limit.")
     instead: str = Field(description="Model beyond the limit, or simplest kind within it.")
 
@@ -76,8 +76,8 @@ class SolvedAnswer(Answer):
         "and stresses to the largest value; for impacts and wear over the cycles an estimate"
     )
     model_error: list[float] = _number(
-        "Estimate, no bound, of the relative error of depth, force and displacements by the model: "
-        "half-space, coupling and transverse slip; 1 for 100 % and more; by load or sample"
+        "Estimate, not a bound, of the relative error of depth, force and displacements by the "
+        "model: half-space, coupling and transverse slip; 1 for 100 % and more; by load or sample"
     )
     model_error_radius: list[float] = _number(
         f"Estimated error of the radius {_ROUND}", default=None
@@ -92,11 +92,11 @@ class PressedAnswer(SolvedAnswer):
     """Response about a contact under loads, or about its fields."""
 
     holds_while: list[HoldsWhile] = left_out(
-        "With `holds_within`: values of what the model leaves out, up to or from which leaving it "
-        "out changes a result by no more than that."
+        "Limits within which an effect that the model leaves out changes a result by no more than "
+        "`holds_within`, if that is given."
     )
     pressure_data_error: list[float | None] = _number(
-        "Error of pressures by the points of a table, an estimate relative to the largest "
+        "Pressure error due to the points of a table, an estimate relative to the largest "
         "pressure; null where that is infinite",
         default=None,
     )
@@ -116,7 +116,8 @@ class ContactAnswer(PressedAnswer):
     )
     elastic_energy: list[float] = _energy("Elastic energy, of the contact")
     data_error: list[float] = _number(
-        "Error by the points of a table, an estimate relative to depth and force", default=None
+        "Error due to the points of a table, an estimate relative to depth and force",
+        default=None,
     )
 
 
@@ -134,7 +135,7 @@ class NormalAnswer(ContactAnswer):
         default=None,
     )
     pull_off_data_error: list[float] = _number(
-        "Error of the pull-off by the points of a table, an estimate relative to its force",
+        "Pull-off error due to the points of a table, an estimate relative to the pull-off force",
         default=None,
     )
 
@@ -145,13 +146,13 @@ class LeastSquaresAnswer(SolvedAnswer):
     fit: list[str] = Field(description="Fitted parameters, in the order of their errors.")
     force_offset: list[float] = _force("Force offset, without contact or in the middle of a loop")
     standard_errors: list[float] = quantity(
-        "as the parameter", "Standard deviations of the fitted parameters"
+        "as the parameter", "Standard errors of the fitted parameters"
     )
     correlation: list[list[float]] = _number("Correlation of the fitted parameters")
     noise: list[float] = _force("Standard deviation of the forces")
     misfit: list[float] = _number(
-        "Probability that residuals of the right model are as far from noise; below 0.01 with a "
-        "warning that names the likeliest fault"
+        "Probability that the right model leaves residuals at least as far from noise; below 0.01 "
+        "a warning names the likeliest fault"
     )
     residual: list[float] = _force("Measured less fitted forces")
 
@@ -164,10 +165,10 @@ class FitAnswer(LeastSquaresAnswer):
     work_of_adhesion: list[float] = quantity("force/length", "Work of adhesion, an energy per area")
     youngs_modulus: list[float] = _pressure("Young's modulus of the sample", default=None)
     youngs_modulus_error: list[float] = _pressure(
-        "Its standard deviation, by that of E*", default=None
+        "Standard error of Young's modulus, from the error of E*", default=None
     )
     drift_rate: list[float] = optional("length/time", "Subtracted drift rate of the depths")
-    drift_rate_error: list[float] = optional("length/time", "Its standard deviation")
+    drift_rate_error: list[float] = optional("length/time", "Standard error of the drift rate")
     indentation_depth: list[float] = _length(
         "Measured depths after subtraction of a drift; with adhesion, without the points between "
         "the least force and the pull-off"
@@ -183,7 +184,7 @@ class LoopAnswer(LeastSquaresAnswer):
     rig_compliance: list[float] = quantity("length/force", "Compliance of the rig, given or fitted")
     displacement_offset: list[float] = _length("Displacement offset, in the middle of the loop")
     dissipated_energy: list[float] = _energy("Energy dissipated in a cycle of the fitted loop")
-    dissipated_energy_error: list[float] = _energy("Its standard deviation")
+    dissipated_energy_error: list[float] = _energy("Standard error of the dissipated energy")
     tangential_displacement: list[float] = _length("Measured displacements")
     tangential_force: list[float] = _force("Fitted forces")
 
@@ -208,7 +209,7 @@ class HistoryAnswer(SolvedAnswer):
         "Energy dissipated in each cycle, the area of its loop", default=None
     )
     secant_stiffness: list[float] = _stiffness(
-        "Range of F_x over the range of u_x in each cycle, at its turning points", default=None
+        "Secant stiffness of each cycle, the range of F_x over the range of u_x", default=None
     )
     final_state: HistoryState = left_out("State at the end, with `return_state`.")
 
@@ -392,8 +393,8 @@ class WearAnswer(SolvedAnswer, OverRadius):
 class EvolutionAnswer(SolvedAnswer, OverRadius):
     """One entry per number of cycles in every list; fields only if requested.
 
-    `error_estimate` is that of the quantities without a radius, by comparison with a coarser run.
-    In full slip that of the normal force is relative to the force before wear.
+    `error_estimate` estimates the error of the quantities without a radius, by comparison with a
+    coarser run. In full slip the error of the normal force is relative to the force before wear.
     """
 
     cycles: list[float] = _number("Number of cycles, as requested")
@@ -455,8 +456,8 @@ class Health(Answer):
     status: Literal["ok"] = Field(description="State: `ok`.")
     version: str = Field(description="Version of the service.")
     compiled: bool = Field(
-        description="True if the loop of load histories is compiled: without, they take about 100 "
-        "times longer."
+        description="True if the module for load histories is compiled; if not, they take about "
+        "100 times longer."
     )
 
 
@@ -464,7 +465,7 @@ class TableColumn(Answer):
     """Column of a file."""
 
     name: str = Field(description="Name without the unit, empty without a heading.")
-    unit: str | None = Field(description="Unit, of an area that of its root; null without one.")
+    unit: str | None = Field(description="Unit, of an area the unit of its root; null without one.")
     quantity: str | None = Field(
         description="`radius`, `area`, `height`, `depth` or `force`; null if it is not taken."
     )
@@ -488,10 +489,10 @@ class TableAnswer(Answer):
     f: list[float] = left_out("Heights of a profile.")
     indentation_depth: list[float] = left_out("Depths of a curve.")
     normal_force: list[float] = left_out("Forces of a curve.")
-    units: list[str | None] = Field(description="Units of the two lists, null without one.")
-    scales: list[float | None] = Field(description="These units in metres or newtons.")
+    units: list[str | None] = Field(description="Units of the two lists, null if not named.")
+    scales: list[float | None] = Field(description="Each of the two units in metres or newtons.")
     lines: list[int] = Field(description="Line of each point in the file, from 1.")
-    notes: list[str] = Field(description="Which columns are taken.")
+    notes: list[str] = Field(description="Notes on the columns that are taken.")
     segments: list[TableSegment] = left_out(
         "Segments of a curve, by a column that names them, else by the direction of the depth."
     )
@@ -502,7 +503,7 @@ class TableAnswer(Answer):
         "Drift rate in the last hold at a constant low force, in units of the depths per second, "
         "as a list of one entry."
     )
-    drift_rate_error: list[float] = left_out("Its standard error.")
+    drift_rate_error: list[float] = left_out("Standard error of `drift_rate`.")
 
 
 class ProblemError(Answer):

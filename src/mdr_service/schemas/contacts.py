@@ -83,7 +83,7 @@ class Load(Choice):
     contact_radius: ScalarOrArray = optional("length", "Contact radius a")
     maximum_pressure: ScalarOrArray = optional(
         "pressure",
-        "Largest pressure p(r), of profiles without a sharp tip or edge, no tables, no adhesion",
+        "Largest pressure p(r); not for tables, adhesion, or profiles with a sharp tip or edge",
     )
 
 
@@ -137,8 +137,8 @@ def as_body(given: BodyMaterial | str) -> materials.Body | Literal["rigid"]:
 # Optional field of several models.
 HOLDS_WITHIN: Final = quantity(
     "1",
-    "Relative change of a result, for which `holds_while` lists the values of what the model "
-    "leaves out: adhesion, slip, thickness, yield and shape",
+    "Admissible relative change of a result by each effect that the model leaves out (adhesion, "
+    "slip, thickness, yield, shape); `holds_while` lists the limits",
     default=None,
     ge=LEAST_CHANGE,
     le=MOST_CHANGE,
@@ -225,12 +225,12 @@ class Moduli(Elastic):
     e_star: float = positive("pressure", "Effective modulus E*, 1/E* = Σ (1 − νᵢ²)/Eᵢ")
     g_star: float = positive(
         "pressure",
-        "Effective shear modulus G*, 1/G* = Σ (2 − νᵢ)/(4Gᵢ); needed with friction only",
+        "Effective shear modulus G*, 1/G* = Σ (2 − νᵢ)/(4Gᵢ); needed only with friction",
         default=None,
     )
     shear_modulus: float = positive(
         "pressure",
-        "Shear modulus G of a twist, 1/G = 1/G₁ + 1/G₂: half of that of two equal bodies",
+        "Shear modulus G of a twist, 1/G = 1/G₁ + 1/G₂; G₁/2 for equal bodies",
         default=None,
     )
     poissons_ratio: float = poissons_ratio(

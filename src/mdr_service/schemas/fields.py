@@ -73,7 +73,7 @@ def quantities(description: str, **field: Any) -> Any:
 class LoadedQuery(Query):
     """Query of a contact under loads, with or without friction, or at the end of a load path."""
 
-    load: Load = left_out("Exactly one control: depth, force or contact radius.")
+    load: Load = left_out("Exactly one control of the normal load.")
     friction_coefficient: float = friction(default=None)
     tangential: Tangential = left_out("Exactly one control, with `friction_coefficient`.")
     history: History = left_out(

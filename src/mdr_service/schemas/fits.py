@@ -57,7 +57,7 @@ class FitQuery(Query, OnBase):
         "`hold` to subtract the drift of the depths in the last hold at a constant low force."
     )
     drift_rate: Signed = optional("length/time", "Drift rate to subtract, instead of `drift`")
-    drift_rate_error: Size = optional("length/time", "Its standard deviation, 0 by default")
+    drift_rate_error: Size = optional("length/time", "Standard error of `drift_rate`, 0 by default")
     poissons_ratio: float = poissons_ratio(
         "Poisson's ratio ν of the sample, for its `youngs_modulus`", default=None
     )
@@ -92,6 +92,6 @@ class LoopQuery(Query):
     friction_coefficient: float = friction(default=None)
     rig_compliance: Size = optional(
         "length/force",
-        "Compliance C of the rig in series with the contact, 0 of displacements measured at the "
-        "contact; to fit it needs full slip",
+        "Compliance C of the rig in series with the contact, 0 if the displacements were measured "
+        "at the contact; a loop without full slip does not determine it",
     )

@@ -77,7 +77,8 @@ class TangentialAmplitude(Choice):
 def _samples_per_step(default: int | None, text: str = "") -> Any:
     return quantity(
         "1",
-        f"Number of samples per load step, even in the controls, the last at its end{text}",
+        "Number of samples per load step, evenly spaced in the controls, the last at its "
+        f"end{text}",
         default=default,
         ge=1,
         le=SETTINGS.max_length,
@@ -175,8 +176,8 @@ class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles
     history: History = left_out("Arbitrary load path, given by its points.")
     cycles: Cycles = left_out("In place of `history`: identical cycles of the tangential load.")
     initial_state: HistoryState = left_out(
-        "`final_state` of a history of this contact and these controls, which is carried on; with "
-        "`history` only."
+        "`final_state` of an earlier history of the same contact and controls, which `history` "
+        "continues."
     )
     return_state: bool = Field(default=False, description="Return `final_state`.")
 

@@ -69,7 +69,7 @@ class TwoSpheresProfile(Strict):
     kind: Literal["two_spheres"]
     radii: list[Signed] = quantity(
         "length",
-        "Radii R₁ of the first body and R₂ of the second, of a socket negative; 1/R₁ + 1/R₂ > 0",
+        "Radius R₁ of the first body and R₂ of the second, negative for a socket; 1/R₁ + 1/R₂ > 0",
         min_length=2,
         max_length=2,
     )
@@ -185,8 +185,8 @@ class TabulatedProfile(Strict):
     )
     uncertainty: Size | None = quantity(
         "length",
-        "Standard uncertainty of the heights; 0: the profile meets the points. Without it, the "
-        "scatter of the points, as rounding or noise cause it",
+        "Standard uncertainty of the heights, by default estimated from the scatter of the points; "
+        "with 0 the profile meets the points",
         default=None,
     )
 
