@@ -29,7 +29,7 @@ export const HELP = {
   cycles: "Number of oscillations after which the profile is shown.",
   fitted: "Quantities that are determined from the curve together with E*.",
   measured: "Measurement in the two columns; each has its own parameters.",
-  rig: "Displacement of the rig per force; 0 if the displacement was measured at the contact. If empty, it is fitted, for which the loop must reach full slip.",
+  rig: "Displacement of the rig per force; 0 if the displacement was measured at the contact. If empty, it is fitted, which needs a loop near or in full slip.",
   rows: "Branch of the curve, between turning points of its depth.",
   from: "Smallest depth to fit, as in the file; or drag over the chart.",
   to: "Largest depth to fit, as in the file; or drag over the chart.",

@@ -44,11 +44,11 @@ def solve_loop(query: LoopQuery) -> LoopFit:
     """Fit G*, µ and the compliance of the rig to a steady loop by least squares.
 
     A rig in series with the contact makes it look softer: `rig_compliance` is given, 0 included, or
-    fitted. Partial slip alone cannot tell the rig from the contact, and is rejected without
-    `rig_compliance`. The standard errors hold for independent errors of the forces of equal size;
-    the warnings `misfit` and `correlated_noise` report residuals that are not such noise, in the
-    order of time, of the displacement and on both branches. `error_estimate` is the numerical error
-    of the parameters.
+    fitted. A loop far below full slip hardly separates the rig from the contact, and is rejected
+    without `rig_compliance`. The standard errors hold for independent errors of the forces of
+    equal size; the warnings `misfit` and `correlated_noise` report residuals that are not such
+    noise, in the order of time, of the displacement and on both branches. `error_estimate` is the
+    numerical error of the parameters.
     """
     loads = "indentation_depth", "normal_force"
     require_one_of(query, *loads)

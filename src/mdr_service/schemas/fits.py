@@ -93,5 +93,5 @@ class LoopQuery(Query):
     rig_compliance: Size = optional(
         "length/force",
         "Compliance C of the rig in series with the contact, 0 if the displacements were measured "
-        "at the contact; a loop without full slip does not determine it",
+        "at the contact; fitting it needs a loop near or in full slip",
     )
