@@ -32,9 +32,9 @@ class LeastSquaresFit(validity.ContactResults):
     fit: tuple[str, ...]
     """Names of the fitted parameters, in the order of `standard_errors` and `correlation`."""
     standard_errors: Array
-    """Standard deviations of the fitted parameters, shape (n,)."""
+    """Standard errors of the fitted parameters, shape (n,)."""
     correlation: Array
-    """Their correlation, shape (n, n) [1]."""
+    """Correlation of the fitted parameters, shape (n, n) [1]."""
     residual: Array
     """Measured less fitted forces [force], shape (k,)."""
     noise: float

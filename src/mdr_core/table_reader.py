@@ -78,7 +78,7 @@ class MeasuredCurve(NamedTuple):
     time: Array | None = None
     """Times from the first point [s], None without a column of them."""
     segments: list[str] | None = None
-    """Kind of the segment of each point, None unless a column tells it."""
+    """Kind of the segment of each point, None without a column of segments."""
 
 
 class ParsedFile(NamedTuple):
@@ -94,7 +94,7 @@ class ParsedFile(NamedTuple):
     time: list[float] | None = None
     """Times of a curve from its first point [s], of a non-decreasing column with a unit."""
     segments: list[str] | None = None
-    """Kind of the segment of each point of a curve, if a column tells it."""
+    """Kind of the segment of each point of a curve, if a column names it."""
 
 
 def read_table(
@@ -224,7 +224,7 @@ def parse(content: bytes, kind: Sequence[str], columns: Sequence[int] | None = N
         elif rows:
             titles = titles_of(heading, separator, max(len(cells) for _, cells in rows), kind)
             return _table(rows, titles, separator, kind, columns)
-    # Of the dialects, the one in which most lines are numbers is probably meant.
+    # The dialect in which most lines are numbers is probably the intended one.
     raise max(errors[1:] or errors, key=lambda each: each[0])[1]
 
 

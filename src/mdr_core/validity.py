@@ -57,7 +57,7 @@ _ROOM: Final = 1 + 1e-9
 # Relative change of forces at a given displacement by transverse slip, and of displacements under
 # forces up to 0.998 of full slip, over (nu/(4 - 2 nu))^2. Source: notes, §8.
 _TRANSVERSE: Final = 0.2
-# Radii that a warning lists, so that it stays one sentence.
+# Maximum number of radii in a warning, so that it stays one sentence.
 _LISTED: Final = 5
 # Poisson's ratio of incompressible bodies.
 _INCOMPRESSIBLE: Final = 0.5

@@ -145,7 +145,7 @@ def test_sources_of_the_results_are_shown_under_them(visit: Visit) -> None:
     assert shown.startswith("Sources: ")
     for source in sources:
         assert shown.count(source) == 1
-    # Those of another analysis replace them.
+    # The sources of another analysis replace them.
     with visit.changing():
         visit.page.click("#tab-wear")
     assert "(5.80)-(5.90)" in visit.page.inner_text("#accuracy small")
@@ -160,7 +160,7 @@ def test_adhesive_ball_pulls_off_as_jkr(visit: Visit, load: str) -> None:
     assert force == pytest.approx(-1.5 * math.pi * 0.05, rel=1e-4, abs=0)
     text = visit.page.inner_text("#accuracy")
     assert "The model itself errs by about 0." in text
-    # That of the state, not of the pull-off at which the curve begins.
+    # The error of the state, not of the pull-off at which the curve begins.
     assert re.search(r"relative error [^ ]+·10⁻¹.", text) or "relative error 0" in text
     # Stable and unstable states, as they are drawn: F = 4 E* a³/(3 R) - (8 π E* w a³)^(1/2).
     drawn = visit.page.evaluate(

@@ -125,7 +125,7 @@ def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
     splines, jumps = coefficients[: basis.size - 1], coefficients[basis.size - 1 : -2 : 2]
     floor = _FLOOR
     if chosen.sigma[chosen.at] < _FLOOR:
-        # A flat that is met is flat up to rounding errors, and what is smooth has no jumps.
+        # With exact heights a flat is flat up to rounding errors, and a smooth profile has no jumps.
         given, floor = chosen.given, 0.0
         flat = np.flatnonzero(np.abs(splines) < _FLOOR)
         given[flat] = ADJACENT * basis.places[1:][flat]

@@ -1,4 +1,4 @@
-// What a computation gave: its numbers, errors and warnings, or what is wrong and where.
+// Outcome of a computation: numbers, errors and warnings, or the invalid fields.
 
 import { make } from "./dom.js";
 import { mark } from "./form.js";
@@ -40,7 +40,7 @@ export function showAccuracy({ responses, lines = [] }, notes, inputs, labels) {
   const data = responses.find((response) => response.data_error)?.data_error.at(-1);
   const byPoints = data ? ` The points of the table leave an error of about ${format(100 * data, 2)} % of depth and force.` : "";
   const accuracy =
-    `Computed by ${methods.join(" and ")}; estimated relative numerical error ${quantity(error, "1", inputs, 2)}${ofFields}. ` +
+    `Computed by ${methods.join(" and ")}; estimated relative error ${quantity(error, "1", inputs, 2)}${ofFields}. ` +
     `The model itself errs by ${model < 100 ? "about" : "over"} ${format(model, 2)} %.${byPoints}`;
   const sources = `Sources: ${[...new Set(responses.flatMap((response) => response.sources))].join("; ")}.`;
   $("#accuracy").replaceChildren(

@@ -88,7 +88,7 @@ function yieldWords(required, inputs) {
 /**
  * Return a sentence with the limits up to which the effects that the model leaves out change the
  * results of the last load by no more than a relative tolerance, or nothing without a load. The
- * shape is no such effect: the page computes with the one that is chosen.
+ * shape is not among them, because the user has chosen it.
  */
 export function limitWords({ holds_while: limits, normal_force: forces }, within, inputs) {
   const force = forces.at(-1);

@@ -154,7 +154,7 @@ export function tableField(root, kind, { change, fail }) {
     const [file] = target.files;
     text.value = await file.text();
     own.fill(false);
-    // Its bytes, because the service knows other encodings.
+    // Send the bytes, because the service reads other encodings than UTF-8.
     read(await file.arrayBuffer());
     target.value = "";
   });
