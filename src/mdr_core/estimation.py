@@ -132,7 +132,7 @@ def minimum(model: Callable[[Array], tuple[Array, Array]], first: Array, bounds:
     bounds, shape (2, n).
     """
 
-    # Residuals and slopes are asked for in turn at one place.
+    # The solver requests residuals and slopes one after the other at the same parameters.
     @lru_cache(maxsize=1)
     def at(place: bytes) -> tuple[Array, Array]:
         return model(np.frombuffer(place))

@@ -150,7 +150,7 @@ def _title(cell: str, line: int) -> Title:
 
 
 def _rank(title: Title, quantity: str) -> int | None:
-    """Place of a column among those of a quantity, last if only its unit identifies it; else None."""
+    """Place of a column among those of a quantity, last by its unit alone; None if none."""
     order, measure = _NAMES[quantity], title.unit and title.unit[0]
     # A known unit decides, whatever the name.
     if measure not in {None, MEASURES[quantity]} and (measure, quantity) != ("area", "radius"):

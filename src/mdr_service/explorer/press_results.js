@@ -78,7 +78,7 @@ const LIMITED = {
   yield: ["yield strength", "pressure"],
 };
 
-/** Return which body yields, if a strength of the list or as given is less than the required one. */
+/** Return the name of the body that yields, if its known strength is below the required one. */
 function yieldWords(required, inputs) {
   const strengths = [1, 2].map((i) => [inputs[`e${i}`] === RIGID ? Infinity : strengthOf(inputs, i) ?? Infinity, i]);
   const [[strength, body]] = strengths.sort(([first], [second]) => first - second || 0);

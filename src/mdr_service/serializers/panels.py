@@ -159,7 +159,7 @@ def _selection(count: int) -> tuple[str, list[int]]:
 
 
 def _varied(query: Any, result: Mapping[str, Any]) -> tuple[str, list[float]]:
-    """Return the name and values of the load that distinguishes the curves: it has the most values."""
+    """Return name and values of the load that distinguishes curves: it has the most values."""
     if query.axes.x == "cycles":
         return "cycles", result["cycles"]
     lists = [(each.control, each.value) for each in query.controls.values() if each.count > 1]
