@@ -305,7 +305,7 @@ def test_area_function_fills_the_table(visit: Visit) -> None:
     visit.page.get_by_text("From a tip’s area function").click()
     visit.page.fill("#coefficients", f"{math.pi} x")
     visit.page.click(".use-area")
-    visit.page.get_by_text("the coefficients are numbers with blanks").wait_for()
+    visit.page.get_by_text("enter the coefficients as numbers").wait_for()
     visit.page.fill("#coefficients", str(math.pi))
     visit.page.fill("#largest-height", "300")
     with visit.changing():
