@@ -114,7 +114,7 @@ def fretting(left: Axes, right: Axes) -> None:
     x = np.linspace(-2, 2, 401)
     states = (
         ("$F_x = +0.8 µF_N$", [0.0, 40.0], RED, "-"),
-        ("$F_x = 0$, falling", [0.0, 40.0, 0.0], BLUE, "-"),
+        ("$F_x = 0$, end", [0.0, 40.0, -40.0, 0.0], BLUE, "-"),
         ("$F_x = -0.8 µF_N$", [0.0, 40.0, -40.0], GREY, "-"),
         ("without friction", [0.0, 0.0], "black", ":"),
     )

@@ -84,9 +84,10 @@ def _map(
     # The left map is mostly bright, the right one mostly dark.
     color = "white" if logarithmic else "black"
     mesh = axes.pcolormesh(x[part], y[part], shown, norm=norm, cmap="cividis", rasterized=True)
+    # Gaps for labels are cut in the scales that the axes have now.
+    axes.set(xscale="log", yscale="log")
     lines = axes.contour(x[part], y[part], shown, levels=levels, colors=color, linewidths=0.6)
     axes.clabel(lines, fontsize=8, fmt="%g" if not logarithmic else "%.0e")
-    axes.set(xscale="log", yscale="log")
     axes.figure.colorbar(mesh, ax=axes)
 
 

@@ -39,7 +39,7 @@ from mdr_core.table_reader import read_curve, read_table
 
 __version__: Final = "0.1.0"
 COMPILED: Final = not _kernel.endswith(".py")
-"""True if the loop of load histories is compiled: without, they take about 100 times longer."""
+"""True if the module for load histories is compiled; if not, they take about 100 times longer."""
 
 __all__ = [
     "COMPILED",

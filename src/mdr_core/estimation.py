@@ -216,7 +216,7 @@ class Model(ABC):
         def values(x: Iterable[float]) -> Parameters:
             return start | dict(zip(self.fit, (unit * x).tolist(), strict=True))
 
-        # Residuals and slopes are asked for in turn at one place.
+        # The solver requests residuals and slopes one after the other at the same parameters.
         @lru_cache(maxsize=1)
         def at(*x: float) -> tuple[Array, Array]:
             forces, slopes = self.at(values(x))

@@ -20,7 +20,7 @@ _RADIAL: Final = 0.63
 ASSUMED_RATIO: Final = 0.3
 """Poisson's ratio of most metals, assumed where the bodies are unknown, and Dundurs' beta."""
 _ASSUMED_BETA: Final = (1 - 2 * ASSUMED_RATIO) / (2 * (1 - ASSUMED_RATIO))
-# The same of a paraboloid, 3/(2 pi). Source: notes, §8.
+# Coefficient of a paraboloid in terms of a/R, 3/(2 pi). Source: notes, §8.
 _RADIAL_ROUND: Final = 0.477
 # Compliance that a half-space lacks, over its own 0.46/(E b): that of a cylinder of radius b and
 # length 6 b is L/(pi E b^2).
@@ -28,7 +28,7 @@ _WALL: Final = 3.0
 # Increase of the force at a given depth to first order, over a/R and the share of a body in the
 # compliance, by how the body is held. Source: notes, §8.
 _HELD: Final = {"contacts": 0.6, "stem": 0.85, "free": 1.1, "block": 0.0}
-# The same of a socket in a block.
+# Coefficient of a socket in a block.
 _SOCKET: Final = 0.6
 # Error of the force on a bonded incompressible layer over the slope at the edge and (a/h)^2, its
 # levelling off with (a/h)^2, and the power of nu/(1 - nu) by which it falls with compressibility:

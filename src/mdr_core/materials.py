@@ -181,7 +181,7 @@ def from_bodies(
     moduli = 1 / normal, 1 / shear, (first[3] - second[3]) / (2 * total)
     ratios = tuple(body.poissons_ratio for body in parts)
     if layer is not None:
-        # Of two equal bodies the second one.
+        # If both bodies are equal, the second one is the layer.
         largest, nu = (second[0], ratios[-1]) if second[0] >= first[0] else (first[0], ratios[0])
         if layer.poissons_ratio not in {None, nu}:
             detail = "differs from Poisson's ratio of the more compliant body: leave it out"

@@ -78,7 +78,7 @@ def rank(x: Array) -> Array:
 def misfit(
     depth: Array, q: Array, residual: Array, force: Array, *, in_time: bool = False
 ) -> dict[str, float]:
-    """Return the probability of residuals like these by chance, by the warning that tells of it.
+    """Return the probability of residuals like these by chance, by the code of the warning.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ HEADS: Final = {"radius": "r", "height": "f", "depth": "d", "force": "F"}
 MEASURES: Final = dict.fromkeys(HEADS, "length") | {
     each: each for each in ("force", "area", "time")
 }
-# What is left in a name of a factor or a unit that is not understood.
+# Remainder in a name of a factor or a unit that is not understood.
 _MULTIPLIER: Final = (
     r"/ ?\S|10 ?\^|[x×*] ?10|1e[-+]?\d|(?i:(?<![a-z])(nano|micro|milli|kilo)(?![a-z]))"
 )
@@ -52,9 +52,9 @@ class Title(NamedTuple):
 
     name: str = ""
     unit: tuple[str, str, float] | None = None
-    """What it measures, its name, and its size in SI units; of an area those of its root."""
+    """Quantity, name and size in SI units of the unit; for an area those of its square root."""
     unknown: str = ""
-    """What is not understood."""
+    """Part of the heading that is not understood."""
     line: int = 0
 
     @property
@@ -175,7 +175,7 @@ def _title(cell: str, line: int) -> Title:
 
 
 def _rank(title: Title, quantity: str) -> int | None:
-    """Place of a column among those of a quantity, last if only its unit tells it; None if none."""
+    """Place of a column among those of a quantity, last by its unit alone; None if none."""
     order, measure = _NAMES[quantity], title.unit and title.unit[0]
     # A known unit decides, whatever the name.
     if measure not in {None, MEASURES[quantity]} and (measure, quantity) != ("area", "radius"):

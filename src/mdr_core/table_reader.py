@@ -225,7 +225,7 @@ def _decoded(content: bytes) -> str:
 def parse(content: bytes, kind: Sequence[str], columns: Sequence[int] | None = None) -> ParsedFile:
     """Return the table of a file, a `PROFILE` or a `CURVE`, as it is written, or an InputError.
 
-    `columns` are the numbers of the two columns, from 1, where headings do not tell them.
+    `columns` are the numbers of the two columns, from 1, if the headings do not identify them.
     """
     if columns and columns[0] == columns[1]:
         raise InputError(("columns",), "must be two different columns")
@@ -242,7 +242,7 @@ def parse(content: bytes, kind: Sequence[str], columns: Sequence[int] | None = N
         elif rows:
             titles = titles_of(heading, separator, max(len(row.cells) for row in rows), kind)
             return _table(rows, titles, separator, kind, columns)
-    # Of the dialects, the one in which most lines are numbers is probably meant.
+    # The dialect in which most lines are numbers is probably the intended one.
     raise max(errors[1:] or errors, key=lambda each: each[0])[1]
 
 

@@ -71,7 +71,7 @@ def as_numbers(path: tuple[str | int, ...], values: float | ArrayLike) -> Array:
                 numbers = array.astype(float, copy=False)
     if numbers is None:
         odd = _odd(values)
-        # Of numbers alone only an integer beyond double precision is not converted.
+        # The only numbers that are not converted are integers beyond double precision.
         detail = f"must be a number or an array of numbers, not {odd}" if odd else FINITE
         raise InputError(path, detail)
     return numbers[()]

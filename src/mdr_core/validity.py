@@ -57,7 +57,7 @@ _ROOM: Final = 1 + 1e-9
 # Relative change of forces at a given displacement by transverse slip, and of displacements under
 # forces up to 0.998 of full slip, over (nu/(4 - 2 nu))^2. Source: notes, §8.
 _TRANSVERSE: Final = 0.2
-# Radii that a warning lists, so that it stays one sentence.
+# Maximum number of radii in a warning, so that it stays one sentence.
 _LISTED: Final = 5
 # Poisson's ratio of incompressible bodies.
 _INCOMPRESSIBLE: Final = 0.5
@@ -193,11 +193,11 @@ def notices(findings: Iterable[Finding]) -> list[Notice]:
 def model_error(contact: SolvedContact) -> Array:
     """Return the estimated relative error of depth, force and displacements by the model [1].
 
-    An estimate, not a bound, of each load, where 1 stands for 100 % and more: of the half-space
-    (`half_space`, `thin_body`), and with friction of the neglected coupling and of the transverse
-    slip. A flat punch that sticks to a half-space has artanh(beta)/beta - 1, about beta^2/3, more
-    force; slip across the load, of the relative size nu/(4 - 2 nu), acts to second order. Local
-    stresses may differ by beta, and displacements under a force next to full slip by more.
+    Estimate, not a bound, for each load; 1 stands for 100 % and more. It includes the half-space
+    (`half_space`, `thin_body`), and with friction the neglected coupling and the transverse slip.
+    A flat punch that sticks to a half-space has artanh(beta)/beta - 1, about beta^2/3, more force;
+    slip across the load, of the relative size nu/(4 - 2 nu), acts to second order. Local stresses
+    may differ by beta, and displacements under a force next to full slip by more.
 
     Source: hay; spence; notes, §8.
     """

@@ -26,8 +26,8 @@ class BatchItem(Strict):
     """Query of a batch."""
 
     ask: Annotated[str, Field(json_schema_extra={"enum": [*QUERIES]})]
-    """Name of the query, as its path ends: `fit` is that of `/v1/normal/fit`, `tangential_fit` of
-    `/v1/tangential/fit`."""
+    """Name of the query, the end of its path; `fit` means `/v1/normal/fit`, and `tangential_fit`
+    means `/v1/tangential/fit`."""
     request: _Request
     """Request of the query, as for its own endpoint: `NormalQuery` for `normal`, and so on."""
 

@@ -194,7 +194,7 @@ class Parameters(ResponseParameters):
         at_end = after_first and given[:1] and given[0].endswith("_from")
         if at_end:
             return given[1]
-        # Of the constants of the material the modulus is the one that is needed.
+        # E* is the only constant of the material that is required.
         return next(iter(given or sorted(inside, key=lambda name: name != "e_star")), place)
 
 

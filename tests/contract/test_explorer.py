@@ -106,7 +106,7 @@ def test_limits_of_the_model_are_shown_in_one_line(visit: Visit) -> None:
     strength = float(f"{0.620 * 1.5 * 100 / (math.pi * a**2) / 1e6:.2g}")
     line = visit.page.locator("#accuracy p").first.inner_text()
     expected = (
-        rf"Within 1 %: adhesion below {work:.2g} N/m, "
+        rf"Left-out effects change the results by at most 1 %: adhesion below {work:.2g} N/m, "
         rf"tangential force below {1 - 0.98**3:.2g} µF_N, thickness above [\d.]+ mm, "
         rf"yield strength above {strength:g} MPa [(]body 1 has 250 MPa: it yields[)][.]"
     )
@@ -145,7 +145,7 @@ def test_sources_of_the_results_are_shown_under_them(visit: Visit) -> None:
     assert shown.startswith("Sources: ")
     for source in sources:
         assert shown.count(source) == 1
-    # Those of another analysis replace them.
+    # The sources of another analysis replace them.
     with visit.changing():
         visit.page.click("#tab-wear")
     assert "(5.80)-(5.90)" in visit.page.inner_text("#accuracy small")
@@ -160,7 +160,7 @@ def test_adhesive_ball_pulls_off_as_jkr(visit: Visit, load: str) -> None:
     assert force == pytest.approx(-1.5 * math.pi * 0.05, rel=1e-4, abs=0)
     text = visit.page.inner_text("#accuracy")
     assert "The model itself errs by about 0." in text
-    # That of the state, not of the pull-off at which the curve begins.
+    # The error of the state, not of the pull-off at which the curve begins.
     assert re.search(r"relative error [^ ]+·10⁻¹.", text) or "relative error 0" in text
     # Stable and unstable states, as they are drawn: F = 4 E* a³/(3 R) - (8 π E* w a³)^(1/2).
     drawn = visit.page.evaluate(
@@ -308,7 +308,7 @@ def test_area_function_fills_the_table(visit: Visit) -> None:
     visit.page.get_by_text("From a tip’s area function").click()
     visit.page.fill("#coefficients", f"{math.pi} x")
     visit.page.click(".use-area")
-    visit.page.get_by_text("the coefficients are numbers with blanks").wait_for()
+    visit.page.get_by_text("enter the coefficients as numbers").wait_for()
     visit.page.fill("#coefficients", str(math.pi))
     visit.page.fill("#largest-height", "300")
     with visit.changing():
@@ -534,7 +534,7 @@ def test_file_with_too_many_points_is_thinned(visit: Visit, tmp_path: Path) -> N
     file.write_text("Weg [µm];Höhe [nm]\n" + "\n".join(rows), "cp1252")
     visit.page.set_input_files("#file", file)
     problem = visit.page.locator("#problem-table")
-    problem.get_by_text("4500 points, of which the service takes 2000").wait_for()
+    problem.get_by_text("4500 points; the service takes at most 2000").wait_for()
     with visit.changing():
         visit.page.click("#table-fields .thin")
     assert visit.page.locator("#table-note").inner_text() == "1500 points."
@@ -713,7 +713,7 @@ def test_strength_follows_the_material(visit: Visit) -> None:
             visit.page.select_option(f"#field-material-{body}", "Aluminium 6061-T6")
     assert visit.page.get_attribute("#field-yield2", "placeholder") == "276"
     expected = hertz_yield(0.01, 7e10, 0.33, 2.76e8)
-    shown = visit.number("Yield begins at, von Mises").split()
+    shown = visit.number("Normal force at onset of yield, von Mises").split()
     assert shown[1] == "N"
     assert float(shown[0]) == pytest.approx(expected, rel=1e-3, abs=0)
     # A strength of the user's own goes with its material, too.
@@ -729,7 +729,7 @@ def test_strength_follows_the_material(visit: Visit) -> None:
     visit.fill("e1", "190,5")
     assert visit.page.input_value("#field-material-1") == "Custom"
     assert visit.page.get_attribute("#field-yield1", "placeholder") == "needed"
-    assert visit.number("Yield begins at, von Mises") == "needs a yield strength"
+    assert visit.number("Normal force at onset of yield, von Mises") == "needs a yield strength"
 
 
 def test_mass_follows_radius_and_material(visit: Visit) -> None:

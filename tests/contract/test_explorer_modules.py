@@ -163,4 +163,4 @@ def test_deviations_of_a_table_are_heights(client: Client) -> None:
     page = {"ul": "mm", "ud": "nm", "uf": "N", "oscillation": "tangential_force"}
     (shown,) = evaluated("messages.js", "module.inWords(...call)", [[text, page, {}]])
     assert re.search(r"deviates by \S+ nm at radius \S+ mm, and by \S+ nm in the root", shown)
-    assert "see “Error by the points of a table”" in shown
+    assert "see “Error due to the points of a table”" in shown

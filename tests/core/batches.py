@@ -1,4 +1,4 @@
-"""Batches of bank records, apart from what the charts use without pytest."""
+"""Batches of bank records, in a module of their own because charts need no pytest."""
 
 from __future__ import annotations
 

@@ -30,8 +30,8 @@ def test_inverse_at_the_resolution_of_doubles(control: str) -> None:
     cone = profiles.TruncatedCone(1.0, 1.0)
     contact = normal.solve(cone, 1.0, **{control: [1e-70, 0.0, 1e-40]})
     np.testing.assert_allclose(contact.contact_radius, 1.0, rtol=1e-15)
-    # That of a table is flat up to rounding errors of its heights. Three points beyond the edge
-    # tell a jump of the slope from one of the curvature.
+    # The flat of a table is flat up to rounding errors of its heights. Three points beyond the
+    # edge distinguish a jump of the slope from a jump of the curvature.
     table = profiles.Tabulated(
         [0.0, 0.5, 1.0, 1.5, 2.0, 3.0], [0.0, 0.0, 0.0, 0.5, 1.0, 2.0], (1.0,)
     )

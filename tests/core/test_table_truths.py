@@ -373,7 +373,7 @@ def test_yield_under_a_rounded_ball() -> None:
     assert expected == pytest.approx(26.933167805, rel=1e-5, abs=0)
 
 
-# Noise: what the table tells of itself.
+# Noise that is estimated from the table.
 
 
 @pytest.mark.parametrize("noise", [1e-3, 1e-2])

@@ -17,7 +17,7 @@ from mdr_service.schemas.examples import EXAMPLES
 from tests.faults.load import HOST, Client, ResetError, post, request
 
 MEGABYTE = 2**20
-# Other than that of the clients beside the attack.
+# Address of the attackers, other than that of the clients beside them.
 ADDRESS = "127.0.0.2"
 MATERIAL = {"e_star": 1.0, "g_star": 0.8}
 CONE = {"profile": {"kind": "cone", "slope": 0.1}, "material": MATERIAL}

@@ -1,7 +1,7 @@
 """Error estimates of bank cases are above the true error, and not far above.
 
-A case is one query. Its estimate and its true error are maxima over its results. True errors are
-resolved to half a unit in the last place only, so smaller values are replaced by that.
+A case is one query; the largest estimate and the largest true error of its results are compared.
+True errors below half a unit in the last place are not resolved and count as half a unit.
 """
 
 from __future__ import annotations

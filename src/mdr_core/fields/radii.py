@@ -113,7 +113,7 @@ def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) ->
     radius = np.atleast_1d(np.asarray(radius, dtype=float))
     known = edges(contact)
     if name == "slip":
-        # It grows as (r - c)^(3/2) from a front, and radii next to c alone have little of it.
+        # Slip grows as (r - c)^(3/2) from a front, and is small at radii next to c.
         count, reach = known.radius.size, known.reach.copy()
         fronts = slice(-1) if isinstance(contact, ContactState) else slice(count // 2, count)
         beyond = 2 / 3 * (radius.max(initial=0.0) - known.radius[fronts])

@@ -29,7 +29,7 @@ _DETACHED: Final = 3
 _SEEN: Final = 3.0
 # Increase of the sum of squares, over the variance of the noise, up to which w = 0 is as likely.
 _NO_WORSE: Final = 0.1
-# The same increase, up to which the error of w follows from it: the slopes give too small an error.
+# Increase up to which the error of w follows from the increase: by the slopes it is too small.
 _FAR: Final = 9.0
 # Probability by chance, below which points do not belong to a fit. Each curve has several tests.
 _CHANCE: Final = 1e-4

@@ -60,7 +60,7 @@ class Fit(LeastSquaresFit):
     drift_rate: float | None = None
     """Subtracted drift rate of the depths [length/time], None without one."""
     drift_rate_error: float | None = None
-    """Its standard deviation, included in the standard errors [length/time]."""
+    """Standard error of the drift rate, included in the other standard errors [length/time]."""
     quantities: ClassVar[tuple[str, ...]] = (
         *("fit", "e_star", "contact_point", "force_offset", "work_of_adhesion"),
         *("standard_errors", "correlation", "noise", "misfit"),

@@ -175,7 +175,7 @@ class PolylineStack:
             else:
                 self._put(0, -backward, backward, 0.0, 0.0)
         else:
-            # Two values of the length of the segment above the corner; the larger one decides.
+            # Length of the segment above the corner by either cone face; the larger value holds.
             slope = self.rows[upper, SLOPE]
             by_forward = over_forward / (1 + slope) if over_forward > 0 and slope > -1 else 0.0
             by_backward = over_backward / (1 - slope) if over_backward > 0 and slope < 1 else 0.0

@@ -125,7 +125,7 @@ def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
     splines, jumps = coefficients[: basis.size - 1], coefficients[basis.size - 1 : -2 : 2]
     floor = _FLOOR
     if chosen.sigma[chosen.at] < _FLOOR:
-        # A flat that is met is flat up to rounding errors, and what is smooth has no jumps.
+        # Exact heights: a flat is flat up to rounding errors, and a smooth profile has no jumps.
         given, floor = chosen.given, 0.0
         flat = np.flatnonzero(np.abs(splines) < _FLOOR)
         given[flat] = ADJACENT * basis.places[1:][flat]
@@ -231,7 +231,7 @@ def _by_rows(basis: TableBasis, chosen: "_Model", given: Array) -> Array:
     free = np.isnan(given)
     result = np.where(free, 0.0, given)
     right = (right - system @ result)[order]
-    # Few points leave coefficients open: these are small.
+    # A few points leave coefficients undetermined: the least norm keeps them small.
     result[free] = lstsq(system[order][:, free], right, EPS, lapack_driver="gelsy")[0]
     return result
 

@@ -41,8 +41,8 @@ class TwoSpheres(Spheroid):
 
     kind: ClassVar[str] = "two_spheres"
     formula: ClassVar[str] = (
-        "both spheres radius − √(radius² − r²), that of a socket subtracted; "
-        "in a socket contact radius ≤ 0.85 of the ball's"
+        "sum of radius − √(radius² − r²) over both spheres, a socket subtracted; "
+        "in a socket contact radius ≤ 0.85 of the ball's radius"
     )
     closed_forms: ClassVar[tuple[str, ...]] = ()
 

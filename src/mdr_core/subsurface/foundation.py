@@ -84,7 +84,7 @@ class Foundation:
         """Pieces on which k g' is smooth in s = sqrt(x^2 - b^2), and empty ones: 2^n in all."""
         load, a = self.load, self.load.radius[-1]
         inner, outer = load.radius[:-1], load.radius[1:]
-        # Of one that starts at the edge, s = 0 is all, unless the flat ends there.
+        # A branch that starts at the contact edge is empty, unless it is the first one.
         every = load.profile.branches
         branches = [b for b in every if max(b.base, b.start) < a] or every[:1]
         starts = np.array([max(branch.base, branch.start) for branch in branches])
@@ -180,7 +180,7 @@ def foundations(contact: Contact, body: int) -> tuple[list[Foundation], tuple[in
         raise InputError(("body",), "must be 1 or 2")
     require_type("contact", contact, Contact, "a contact, or the state of a load history")
     if isinstance(contact, NormalContact):
-        # It sticks under no tangential force.
+        # Without a tangential force the whole contact sticks, whatever G* and mu are.
         contact = tangential.solve(contact, contact.e_star, 1.0, tangential_force=0.0)
     shape, traction = tractions(contact)
     return [Foundation(traction(load), body) for load in range(prod(shape))], shape
@@ -202,7 +202,7 @@ def _merged(blocks: _Blocks) -> _Blocks:
 def _add(total: Numbers, point: Indices, square: Array, x: Array, z: Array, mass: Numbers) -> None:
     """Add sums of mass Im K over nodes, from Re w - x^2 there (nodes, m), at points (m,)."""
     zeta = z + 1j * x
-    # Its imaginary part is positive: the root never changes its sheet.
+    # The imaginary part is positive, so that the root never changes its sheet.
     rho = np.sqrt(square + 2 * z * zeta)
     inverse, second = 1 / rho, 1 / (rho + zeta)
     mixed, cube = inverse * second, inverse * inverse * inverse

@@ -73,7 +73,7 @@ class AnnulusState:
 
     @cached_property
     def reduced_amplitude(self) -> Array:
-        """gamma(a): D, and d in full slip."""
+        """gamma(a), which is the depth D, or d in full slip."""
         if self.initial.constant_displacement:
             return np.full(self.end.shape, self.initial.step)
         rise = self._stick_rise if self.initial.stick_shrinks else 0.0

@@ -66,9 +66,9 @@ _LOOSER: Final = 4.0
 # Factor of the difference in an estimate of a scalar, whose error is at most 0.8 times the
 # difference where it falls like 1/resolution^2.
 _SAFETY: Final = 2.0
-# The same of a field: the thin peak of the pressure next to a moving stick edge falls more slowly.
+# Factor for a field: the thin peak of the pressure next to a moving stick edge falls more slowly.
 _OF_FIELDS: Final = 4.0
-# The same beside a break, where both runs may err alike.
+# Factor beside a break, where both runs may err alike.
 _AT_BREAKS: Final = 10.0
 # Radii at which the two runs are compared besides the given ones, as parts of the worn annulus.
 _SAMPLES: Final = np.linspace(0.0, 1.0, 66)[1:-1]

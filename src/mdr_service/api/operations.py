@@ -23,7 +23,7 @@ _DOCS_PAGE: Final = files("mdr_service").joinpath("page/docs.html").read_text("u
 # Media type of the text format of Prometheus.
 _METRICS: Final = "text/plain; version=0.0.4; charset=utf-8"
 _AS: Final = "`profile` (radius and height) or `curve` (depth and force)"
-_COLUMNS: Final = "numbers of the two columns, from 1, where headings do not tell them: 2,3"
+_COLUMNS: Final = "Numbers of the two columns, such as `2,3`, if the headings do not identify them"
 _EXAMPLE: Final = {"schema": {"type": "string"}, "example": "r [mm];f [µm]\n0;0\n0,1;0,5"}
 _FILE: Final = {"requestBody": {"required": True, "content": {"text/csv": _EXAMPLE}}}
 _OK: Final = Health(status="ok", version=__version__, compiled=COMPILED)
@@ -74,8 +74,8 @@ async def read_table(
 ) -> Response:
     """Read a text file with headings, units, decimal commas and further columns.
 
-    Nothing is guessed: what is not understood is rejected, with its line and the remedy; `errors`
-    lists the columns where they are left open.
+    Nothing is guessed: a text that is not understood is rejected with its line and the remedy. If
+    the headings do not identify the two columns, `errors` lists all columns.
     """
     if kind not in tables.KINDS:
         raise problems.invalid([("/as", f"must be one of {', '.join(tables.KINDS)}")])

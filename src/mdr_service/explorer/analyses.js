@@ -72,7 +72,7 @@ export function listedField(inputs) {
 
 /** Which measurement is fitted. */
 export const MEASURED = {
-  key: "measured", label: "Measured", choices: [["curve", "curve of force"], ["loop", "loop of friction"]],
+  key: "measured", label: "Measured", choices: [["curve", "force-depth curve"], ["loop", "friction loop"]],
 };
 
 /** Return the fields of a measured curve or loop: which of its points are fitted. */
@@ -94,7 +94,7 @@ export function curveFields(inputs) {
   ];
 }
 
-const LOOP = "A loop of friction over displacement was measured under a constant normal load: which shear modulus and coefficient of friction has the contact, and how much energy does a cycle take? ± is a standard error.";
+const LOOP = "A loop of friction over displacement was measured under a constant normal load: what are the shear modulus and the coefficient of friction of the contact, and how much energy does a cycle dissipate? ± is a standard error.";
 
 /** Return the question that the page answers. */
 export function leadOf(inputs) {
@@ -127,7 +127,7 @@ export const ANALYSES = {
   },
   impact: {
     title: "Impact",
-    lead: "The body hits the other one obliquely: how does it rebound, and how much energy does friction take?",
+    lead: "The body hits the other one obliquely: how does it rebound, and how much energy does friction dissipate?",
     fields: (inputs) => [
       FRICTION,
       derived(inputs, "density", "Density of body 1", "kg/m³", densityOf(inputs)),
@@ -163,11 +163,11 @@ export const ANALYSES = {
   },
   fit: {
     title: "Fit",
-    lead: "A curve of force over depth was measured: which modulus has the contact, and where does it begin? ± is a standard error.",
+    lead: "A curve of force over depth was measured: what is the modulus of the contact, and at which depth does it begin? ± is a standard error.",
     fields: (inputs) => hasLoop(inputs) ? [{
       key: "rig", label: "Compliance of the rig in series", dimension: "compliance", optional: true, placeholder: "fitted",
     }] : [{ key: "nu2", label: "Poisson’s ratio of the sample", dimension: "1", range: [0, 0.5] }, {
-      key: "fitted", label: "Fitted beside E*",
+      key: "fitted", label: "Fitted together with E*",
       choices: [
         ["none", "nothing"], ["contact_point", "contact point"],
         ["contact_point,force_offset", "contact point, force offset"],

@@ -86,7 +86,7 @@ function contours(trace, spec, inputs, colours, { width }) {
     colorscale: "Viridis",
     ...levels(z),
     line: { width: 0.4 },
-    // Beside a narrow map no space is left for it.
+    // A narrow chart has no space for the colour bar beside the map.
     colorbar: {
       title: { text: withUnit(spec.z, inputs, spec.z[2]), side: width < NARROW ? "top" : "right" },
       tickfont: { color: colours.ink },

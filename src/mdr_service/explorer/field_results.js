@@ -34,11 +34,11 @@ export async function solveStress(inputs, query) {
     known: now,
     numbers: [
       ["Largest von Mises stress", mises.value, "pressure"],
-      ["Yield begins at, von Mises", ...onset("von_mises")],
+      ["Normal force at onset of yield, von Mises", ...onset("von_mises")],
       ["Depth z of the largest stress", mises.z, "length"],
       ["x of the largest stress", mises.x, "length"],
       ["Largest shear stress", shear.value, "pressure"],
-      ["Yield begins at, Tresca", ...onset("tresca")],
+      ["Normal force at onset of yield, Tresca", ...onset("tresca")],
       ...surface.numbers,
       ...numbersOf(now, ["contact_radius"]),
     ],
@@ -101,7 +101,7 @@ export async function solveWear(inputs, query) {
       ["Worn volume in the limit", final.worn_volume, "volume"],
       ["Wear radius ã in the limit", final.wear_radius, "length"],
       ...numbersOf(now, ["indentation_depth", "normal_force", "dissipated_energy"]),
-      ["Energy per cycle, mean", now.dissipated_energy / inputs.cycles, "energy"],
+      ["Mean energy per cycle", now.dissipated_energy / inputs.cycles, "energy"],
     ],
     charts: [
       fieldChart("Evolution", "Profile", "profile", edges, radius, [

@@ -94,7 +94,7 @@ export function optionalRow(field, inputs, { change, fail }) {
     const parts = list ? text.value.split(/,?\s+|;/).filter(Boolean) : text.value.trim() ? [text.value] : [];
     const values = parts.map((part) => read(part, dimension, inputs));
     const wrong = values.some(Number.isNaN);
-    mark(element, wrong ? (list ? "not numbers with blanks between them" : noNumber(text.value, dimension)) : "");
+    mark(element, wrong ? (list ? "enter numbers separated by blanks" : noNumber(text.value, dimension)) : "");
     if (wrong) return fail(key);
     change(key, list || values.length === 0 ? values.join(",") : values[0]);
   });

@@ -118,7 +118,7 @@ export async function solveCycle(inputs, query) {
 export async function solveImpact(inputs, query) {
   const mass = massOf(inputs);
   if (mass === undefined) {
-    const detail = "is needed: the shape or the material leaves it open";
+    const detail = "is needed: shape and material do not determine it";
     throw new Refusal({ title: "Invalid request", errors: [{ pointer: "/normal_mass", detail }] });
   }
   const body = {

@@ -182,7 +182,7 @@ function showForm() {
   fill($("#measured-kind"), rows([MEASURED]));
   fill($("#curve-choice"), rows(curveFields(inputs)));
   $("#curve-choice").hidden = isLoop;
-  // A fitted curve tells the modulus of body 2.
+  // The fit determines the modulus of body 2.
   const bodies = inputs.tab === "fit" && !isLoop ? [1] : [1, 2];
   const layer = inputs.tab === "press" ? [THICKNESS, BASE] : [THICKNESS];
   fill($("#bodies"), [...bodies.flatMap((i) => [materialRow(i), ...rows(bodyFields(inputs, i))]), ...rows(layer)]);

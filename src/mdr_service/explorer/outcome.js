@@ -1,4 +1,4 @@
-// What a computation gave: its numbers, errors and warnings, or what is wrong and where.
+// Outcome of a computation: numbers, errors and warnings, or the invalid fields.
 
 import { make } from "./dom.js";
 import { mark } from "./form.js";
@@ -103,7 +103,7 @@ export function showProblem(error, inputs, labels) {
   document.querySelectorAll(".field:has(.problem)").forEach((field) => mark(field, ""));
   box.hidden = !error;
   if (!error) return;
-  const { title = "The page has an error", errors = [] } = error.problem ?? {};
+  const { title = "Error in the page", errors = [] } = error.problem ?? {};
   const found = errors.map((each) => placed(each, inputs, labels));
   for (const { field, text } of found) if (field) mark(field, text);
   const detail = found.length ? found.map(({ message }) => message).join("; ") : inWords(error.message, inputs, labels);

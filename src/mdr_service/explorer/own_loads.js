@@ -17,7 +17,7 @@ export function listOf(text, dimension, inputs) {
     // Blanks separate numbers, unless a unit follows.
     return part.trim().split(/\s+(?=[-+−]?[\d.])/);
   }).map((part) => part.trim()).filter(Boolean);
-  if (parts.length > MOST) throw new Error(`${parts.length} loads, of which the page takes ${MOST}: use mdr sweep`);
+  if (parts.length > MOST) throw new Error(`${parts.length} loads; the page takes at most ${MOST}: use mdr sweep`);
   return parts.map((part) => {
     if (/^\d+,\d+$/.test(part) && parts.length === 1) throw new Error(`write ${part.replace(",", " ")} for two numbers, ${part.replace(",", ".")} for one`);
     const value = read(part, dimension, inputs);

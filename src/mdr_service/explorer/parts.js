@@ -15,7 +15,7 @@ export async function normalForce(inputs, query) {
 }
 
 function withoutFriction() {
-  const detail = "is 0, and nothing sticks: a contact without friction belongs to Press, or to Stress without tangential load";
+  const detail = "is 0, and nothing sticks: use Press, or Stress without a tangential load";
   return new Refusal({ title: "Invalid request", errors: [{ pointer: "/friction_coefficient", detail }] });
 }
 

@@ -78,7 +78,7 @@ const LIMITED = {
   yield: ["yield strength", "pressure"],
 };
 
-/** Return which body yields, if a strength of the list or as given is less than the required one. */
+/** Return the name of the body that yields, if its known strength is below the required one. */
 function yieldWords(required, inputs) {
   const strengths = [1, 2].map((i) => [inputs[`e${i}`] === RIGID ? Infinity : strengthOf(inputs, i) ?? Infinity, i]);
   const [[strength, body]] = strengths.sort(([first], [second]) => first - second || 0);
@@ -88,7 +88,7 @@ function yieldWords(required, inputs) {
 /**
  * Return a sentence with the limits up to which the effects that the model leaves out change the
  * results of the last load by no more than a relative tolerance, or nothing without a load. The
- * shape is no such effect: the page computes with the one that is chosen.
+ * shape is not among them, because the user has chosen it.
  */
 export function limitWords({ holds_while: limits, normal_force: forces }, within, inputs) {
   const force = forces.at(-1);
@@ -99,7 +99,7 @@ export function limitWords({ holds_while: limits, normal_force: forces }, within
     const yields = effect === "yield" ? yieldWords(value, inputs) : "";
     return `${label} ${below ? "below" : "above"} ${size}${isShare ? " µF_N" : ""}${yields}`;
   });
-  return force > 0 ? `Within ${100 * within} %: ${words.join(", ")}.` : "";
+  return force > 0 ? `Left-out effects change the results by at most ${100 * within} %: ${words.join(", ")}.` : "";
 }
 
 /** Return a sentence about the largest stresses on the axis, if they lie beneath the surface. */

@@ -55,7 +55,7 @@ export function showReport(inputs, analysis, version) {
     ...(inputs.tab === "fit" ? [dataWords("Measured curve", [hasLoop(inputs) ? "u" : "d", "F"], inputs.curve)] : []),
   ];
   document.querySelector("#data").textContent = held.join(" ");
-  // The points of a long table are no part of a link that anybody would type.
+  // A printed link omits the points of a long table, because nobody would type them.
   const whole = new URL(toAddress(inputs), document.baseURI).href;
   document.querySelector("#link").textContent = whole.length < 2000 ? whole : `${whole.replace(/#.*/, "")} (the shape and the load; the data below complete it)`;
 }

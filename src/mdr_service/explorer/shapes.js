@@ -62,7 +62,7 @@ export const OWN_FIELDS = {
     { name: "radius_2", dimension: "length", description: "Radius of the second ball, < 0 for a socket" },
   ],
   tabulated: [
-    { name: "uncertainty", dimension: "displacement", description: "Uncertainty of the heights", optional: true, placeholder: "by scatter" },
+    { name: "uncertainty", dimension: "displacement", description: "Uncertainty of the heights", optional: true, placeholder: "from scatter" },
     { name: "breaks", dimension: "length", description: "Radii where the slope jumps", optional: true, list: true, placeholder: "none" },
   ],
   series: [1, 2].flatMap((i) => [

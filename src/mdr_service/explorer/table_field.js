@@ -103,7 +103,7 @@ export function tableField(root, kind, { change, fail }) {
       part(".thin").hidden = true;
       rewrite({ r: thinned(r), f: thinned(f), units });
     };
-    throw new Error(`${r.length} points, of which the service takes ${kind.most}`);
+    throw new Error(`${r.length} points; the service takes at most ${kind.most}`);
   };
   selects.forEach((select, i) => {
     select.add(Object.assign(new Option("unit?", ""), { disabled: true, hidden: true }));
@@ -133,15 +133,15 @@ export function tableField(root, kind, { change, fail }) {
     const [file] = target.files;
     text.value = await file.text();
     own.fill(false);
-    // Its bytes, because the service knows other encodings.
+    // Send the bytes, because the service reads other encodings than UTF-8.
     read(await file.arrayBuffer());
     target.value = "";
   });
   part(".use-area")?.addEventListener("click", () => {
     const coefficients = part("#coefficients").value.trim().split(/[\s;]+/).map(numberOf);
     const [least, most] = ["lowest", "largest"].map((end) => numberOf(part(`#${end}-height`).value));
-    const wrong = coefficients.some(Number.isNaN) ? "the coefficients are numbers with blanks between them"
-      : !(least >= 0 && most > least) ? "the heights are numbers, the lowest at least 0 and below the largest"
+    const wrong = coefficients.some(Number.isNaN) ? "enter the coefficients as numbers separated by blanks"
+      : !(least >= 0 && most > least) ? "enter the heights as numbers, the lowest at least 0 and below the largest"
         : selects[1].value ? "" : "choose the unit of f above";
     part("#area-problem").textContent = wrong;
     if (wrong) return;

@@ -182,7 +182,7 @@ export function noNumber(text, dimension) {
   }
   const units = Object.keys(readable(dimension)).filter(Boolean);
   if (!Number.isNaN(number) && name) {
-    return units.length ? `“${name}” is none of its units ${units.slice(0, 6).join(", ")}` : `a number without a unit, not “${name}”`;
+    return units.length ? `“${name}” is not one of its units: ${units.slice(0, 6).join(", ")}` : `a number without a unit, not “${name}”`;
   }
   return text.trim() === "" ? "a number is needed" : "not a number";
 }

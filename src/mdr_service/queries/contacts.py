@@ -45,7 +45,7 @@ def solve_normal(query: NormalQuery | LoadedQuery | WearQuery | TorsionQuery) ->
     """Compute the frictionless contact of a profile with an elastic half-space.
 
     Every list of the response has one entry per load. `method` names the most expensive method
-    used, `error_estimate` is an upper bound on the relative error of every number.
+    used; `error_estimate` is an upper bound on the relative error of every number.
     """
     arguments = body(query) | control(query.load)
     given = query.material.model_dump(include=ADHESION, exclude_unset=True)

@@ -33,7 +33,7 @@ _FOUNDATION: Final = frozenset({"foundation_load", "foundation_shear"})
 
 
 def solve_stress(query: StressQuery) -> Contact:
-    """Compute the fields named in `quantities`, and nothing else, by load and radius.
+    """Compute the fields named in `quantities` by load and radius.
 
     `error_estimate` bounds the error of each field relative to its largest value. A rounding error
     of a requested radius near a, c or a break is not included.

@@ -13,12 +13,12 @@ from mdr_service.schemas.fits import FitQuery, LoopQuery
 def solve_fit(query: FitQuery) -> Fit:
     """Fit F = E* F̂(d − d₀) + F₀ to a measured curve by least squares.
 
-    The standard errors hold for independent errors of the forces of equal size. A warning tells
-    that the residuals are not such noise: `two_branches` (give a `segment`), `noise_grows`,
-    `correlated_noise`, or `misfit` where the shape or the model is wrong. Others tell that one
-    point decides (`one_point`), that the interval of the contact point is lopsided or an offset
-    compensates adhesion (`undetermined`), or that no adhesion is seen (`bound`). With
-    `poissons_ratio` the response has Young's modulus of the sample. With `time` a drift can be
+    The standard errors hold for independent errors of the forces of equal size. Warnings report
+    residuals that are not such noise: `two_branches` (give a `segment`), `noise_grows`,
+    `correlated_noise`, or `misfit` where the shape or the model is wrong. Other warnings report a
+    single decisive point (`one_point`), a lopsided interval of the contact point or an offset that
+    compensates adhesion (`undetermined`), or a curve without adhesion (`bound`). With
+    `poissons_ratio` the response contains Young's modulus of the sample. With `time` a drift can be
     subtracted from the depths: `drift` takes it from the last hold in the lower half of the forces,
     `drift_rate` prescribes it. The standard errors include the error of the rate.
 
@@ -50,11 +50,11 @@ def solve_loop(query: LoopQuery) -> LoopFit:
     """Fit G*, µ and the compliance of the rig to a steady loop by least squares.
 
     A rig in series with the contact makes it look softer: `rig_compliance` is given, 0 included, or
-    fitted. Partial slip alone cannot tell the rig from the contact, and is rejected without
-    `rig_compliance`. The standard errors hold for independent errors of the forces of equal size;
-    the warnings `misfit` and `correlated_noise` tell that the residuals are not such noise, in the
-    order of time, of the displacement and on both branches. `error_estimate` is the numerical error
-    of the parameters.
+    fitted. A loop far below full slip hardly separates the rig from the contact, and is rejected
+    without `rig_compliance`. The standard errors hold for independent errors of the forces of
+    equal size; the warnings `misfit` and `correlated_noise` report residuals that are not such
+    noise, in the order of time, of the displacement and on both branches. `error_estimate` is the
+    numerical error of the parameters.
     """
     loads = "indentation_depth", "normal_force"
     require_one_of(query, *loads)

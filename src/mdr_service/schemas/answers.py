@@ -26,12 +26,12 @@ class AnswerWarning(Answer):
     code: str
     """Stable name of the warning."""
     message: str
-    """Explanation in this case."""
+    """Explanation for this case."""
     value: float | None
-    """Size of the finding, null where it has none."""
+    """Value compared with `limit`, or null."""
     limit: float | None
-    """Limit beyond which the warning is raised, a lower one of probabilities and of `jkr_range`;
-    null where it has none."""
+    """Limit beyond which the warning is raised (below it for probabilities and `jkr_range`), or
+    null."""
     instead: Remedy | None
     """Remedy, null where there is none."""
 
@@ -46,7 +46,7 @@ class HoldsWhile(Answer):
     below: list[float] = ABSENT
     """Largest value [as the quantity]"""
     above: list[float] = ABSENT
-    """Least value [as the quantity]"""
+    """Smallest value [as the quantity]"""
     changes: str
     """Result that changes by `holds_within` at the limit."""
     instead: str
@@ -65,13 +65,13 @@ class SolvedAnswer(Answer):
     """Bound on the numerical error: of scalars relative to their values, of fields, histories and
     stresses to the largest value; for impacts and wear over the cycles an estimate [1]"""
     model_error: list[float]
-    """Estimate, no bound, of the relative error of depth, force and displacements by the model:
+    """Estimate, not a bound, of the relative error of depth, force and displacements by the model:
     half-space, coupling and transverse slip; 1 for 100 % and more; by load or sample [1]"""
     model_error_radius: list[float] = ABSENT
-    """Estimated error of the radius under a given force by the model, of round bodies or a given
+    """Estimated error of the radius under a given force by the model, for round bodies or a given
     thickness [1]"""
     model_error_pressure: list[float] = ABSENT
-    """Estimated error of the pressure under a given force by the model, of round bodies or a given
+    """Estimated error of the pressure under a given force by the model, for round bodies or a given
     thickness [1]"""
     warnings: list[AnswerWarning]
     """Warnings, each with a stable code."""
@@ -81,10 +81,10 @@ class PressedAnswer(SolvedAnswer):
     """Response about a contact under loads, or about its fields."""
 
     holds_while: list[HoldsWhile] = ABSENT
-    """With `holds_within`: values of what the model leaves out, up to or from which leaving it out
-    changes a result by no more than that."""
+    """Limits within which an effect that the model leaves out changes a result by no more than
+    `holds_within`, if that is given."""
     pressure_data_error: list[float | None] = ABSENT
-    """Error of pressures by the points of a table, an estimate relative to the largest pressure;
+    """Pressure error due to the points of a table, an estimate relative to the largest pressure;
     null where that is infinite [1]"""
 
 
@@ -108,7 +108,7 @@ class ContactAnswer(PressedAnswer):
     elastic_energy: list[float]
     """Elastic energy, of the contact [force*length]"""
     data_error: list[float] = ABSENT
-    """Error by the points of a table, an estimate relative to depth and force [1]"""
+    """Error due to the points of a table, an estimate relative to depth and force [1]"""
 
 
 class NormalAnswer(ContactAnswer):
@@ -121,7 +121,8 @@ class NormalAnswer(ContactAnswer):
     retraction: list[float] = ABSENT
     """Retraction Δℓ by adhesion, from the contact without adhesion of the same radius [length]"""
     pull_off_data_error: list[float] = ABSENT
-    """Error of the pull-off by the points of a table, an estimate relative to its force [1]"""
+    """Pull-off error due to the points of a table, an estimate relative to the pull-off force
+    [1]"""
 
 
 class LeastSquaresAnswer(SolvedAnswer):
@@ -132,14 +133,14 @@ class LeastSquaresAnswer(SolvedAnswer):
     force_offset: list[float]
     """Force offset, without contact or in the middle of a loop [force]"""
     standard_errors: list[float]
-    """Standard deviations of the fitted parameters [as the parameter]"""
+    """Standard errors of the fitted parameters [as the parameter]"""
     correlation: list[list[float]]
     """Correlation of the fitted parameters [1]"""
     noise: list[float]
     """Standard deviation of the forces [force]"""
     misfit: list[float]
-    """Probability that residuals of the right model are as far from noise; below 0.01 with a
-    warning that names the likeliest fault [1]"""
+    """Probability that the right model leaves residuals at least as far from noise; below 0.01 a
+    warning names the likeliest fault [1]"""
     residual: list[float]
     """Measured less fitted forces [force]"""
 
@@ -156,11 +157,11 @@ class FitAnswer(LeastSquaresAnswer):
     youngs_modulus: list[float] = ABSENT
     """Young's modulus of the sample [pressure]"""
     youngs_modulus_error: list[float] = ABSENT
-    """Its standard deviation, by that of E* [pressure]"""
+    """Standard error of Young's modulus, from the error of E* [pressure]"""
     drift_rate: list[float] = ABSENT
     """Subtracted drift rate of the depths [length/time]"""
     drift_rate_error: list[float] = ABSENT
-    """Its standard deviation [length/time]"""
+    """Standard error of the drift rate [length/time]"""
     indentation_depth: list[float]
     """Measured depths after subtraction of a drift; with adhesion, without the points between the
     least force and the pull-off [length]"""
@@ -182,7 +183,7 @@ class LoopAnswer(LeastSquaresAnswer):
     dissipated_energy: list[float]
     """Energy dissipated in a cycle of the fitted loop [force*length]"""
     dissipated_energy_error: list[float]
-    """Its standard deviation [force*length]"""
+    """Standard error of the dissipated energy [force*length]"""
     tangential_displacement: list[float]
     """Measured displacements [length]"""
     tangential_force: list[float]
@@ -218,7 +219,7 @@ class HistoryAnswer(SolvedAnswer):
     energy_per_cycle: list[float] = ABSENT
     """Energy dissipated in each cycle, the area of its loop [force*length]"""
     secant_stiffness: list[float] = ABSENT
-    """Range of F_x over the range of u_x in each cycle, at its turning points [force/length]"""
+    """Secant stiffness of each cycle, the range of F_x over the range of u_x [force/length]"""
     final_state: HistoryState = ABSENT
     """State at the end, with `return_state`."""
 
@@ -431,8 +432,8 @@ class WearAnswer(SolvedAnswer, OverRadius):
 class EvolutionAnswer(SolvedAnswer, OverRadius):
     """One entry per number of cycles in every list; fields only if requested.
 
-    `error_estimate` is that of the quantities without a radius, by comparison with a coarser run.
-    In full slip that of the normal force is relative to the force before wear.
+    `error_estimate` estimates the error of the quantities without a radius, by comparison with a
+    coarser run. In full slip the error of the normal force is relative to the force before wear.
     """
 
     cycles: list[float]
@@ -505,7 +506,8 @@ class Health(Answer):
     version: str
     """Version of the service."""
     compiled: bool
-    """True if the loop of load histories is compiled: without, they take about 100 times longer."""
+    """True if the module for load histories is compiled; if not, they take about 100 times
+    longer."""
 
 
 class TableColumn(Answer):
@@ -514,7 +516,7 @@ class TableColumn(Answer):
     name: str
     """Name without the unit, empty without a heading."""
     unit: str | None
-    """Unit, of an area that of its root; null without one."""
+    """Unit, of an area the unit of its root; null without one."""
     quantity: str | None
     """`radius`, `area`, `height`, `depth` or `force`; null if it is not taken."""
 
@@ -546,13 +548,13 @@ class TableAnswer(Answer):
     normal_force: list[float] = ABSENT
     """Forces of a curve."""
     units: list[str | None]
-    """Units of the two lists, null without one."""
+    """Units of the two lists, null if not named."""
     scales: list[float | None]
-    """These units in metres or newtons."""
+    """Each of the two units in metres or newtons."""
     lines: list[int]
     """Line of each point in the file, from 1."""
     notes: list[str]
-    """Which columns are taken, and which with the sign reversed."""
+    """Notes on the columns that are taken, and on those with the sign reversed."""
     segments: list[TableSegment] = ABSENT
     """Segments of a curve, if the file names them, else by the direction of the depth."""
     time: list[float] = ABSENT
@@ -561,7 +563,7 @@ class TableAnswer(Answer):
     """Drift rate in the last hold at a constant low force, in units of the depths per second, as a
     list of one entry."""
     drift_rate_error: list[float] = ABSENT
-    """Its standard error."""
+    """Standard error of `drift_rate`."""
 
 
 class ProblemError(Answer):

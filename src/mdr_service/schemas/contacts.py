@@ -84,7 +84,7 @@ class Load(Choice):
     contact_radius: ScalarOrArray = ABSENT
     """Contact radius a [length]"""
     maximum_pressure: ScalarOrArray = ABSENT
-    """Largest pressure p(r), of profiles without a sharp tip or edge, no tables, no adhesion
+    """Largest pressure p(r); not for tables, adhesion, or profiles with a sharp tip or edge
     [pressure]"""
 
 
@@ -201,9 +201,9 @@ class Moduli(Elastic):
     e_star: Positive
     """Effective modulus E*, 1/E* = Σ (1 − νᵢ²)/Eᵢ [pressure]"""
     g_star: Positive = ABSENT
-    """Effective shear modulus G*, 1/G* = Σ (2 − νᵢ)/(4Gᵢ); needed with friction only [pressure]"""
+    """Effective shear modulus G*, 1/G* = Σ (2 − νᵢ)/(4Gᵢ); needed only with friction [pressure]"""
     shear_modulus: Positive = ABSENT
-    """Shear modulus G of a twist, 1/G = 1/G₁ + 1/G₂: half of that of two equal bodies [pressure]"""
+    """Shear modulus G of a twist, 1/G = 1/G₁ + 1/G₂; G₁/2 for equal bodies [pressure]"""
     poissons_ratio: PoissonsRatio = ABSENT
     """Poisson's ratio ν of the elastic body, needed for stresses beneath its surface; elsewhere
     only warnings and `model_error` depend on it, for which 0.3 is assumed [1]"""
@@ -239,8 +239,8 @@ HoldsWithin = Annotated[
     Field(
         ge=LEAST_CHANGE,
         le=MOST_CHANGE,
-        description="Relative change of a result, for which `holds_while` lists the values of what "
-        "the model leaves out: adhesion, slip, thickness, yield and shape [1]",
+        description="Admissible relative change of a result by each effect that the model leaves "
+        "out (adhesion, slip, thickness, yield, shape); `holds_while` lists the limits [1]",
     ),
 ]
 Friction = Annotated[float, Field(ge=1e-15, le=1e6, description="Coefficient of friction µ [1]")]

@@ -62,7 +62,7 @@ class LoadedQuery(Query):
     """Query of a contact under loads, with or without friction, or at the end of a load path."""
 
     load: Load = ABSENT
-    """Exactly one control: depth, force or contact radius."""
+    """Exactly one control of the normal load."""
     friction_coefficient: Friction = ABSENT
     tangential: Tangential = ABSENT
     """Exactly one control, with `friction_coefficient`."""

@@ -49,7 +49,7 @@ class FitQuery(Query, OnBase):
     drift_rate: Signed = ABSENT
     """Drift rate to subtract, instead of `drift` [length/time]"""
     drift_rate_error: Size = ABSENT
-    """Its standard deviation, 0 by default [length/time]"""
+    """Standard error of `drift_rate`, 0 by default [length/time]"""
     poissons_ratio: PoissonsRatio = ABSENT
     """Poisson's ratio ν of the sample, for its `youngs_modulus` [1]"""
     indenter: BodyOrRigid = "rigid"
@@ -80,5 +80,5 @@ class LoopQuery(Query):
     0 and `displacement_offset` the middle of the displacements."""
     friction_coefficient: Friction = ABSENT
     rig_compliance: Size = ABSENT
-    """Compliance C of the rig in series with the contact, 0 of displacements measured at the
-    contact; to fit it needs full slip [length/force]"""
+    """Compliance C of the rig in series with the contact, 0 if the displacements were measured at
+    the contact; fitting it needs a loop near or in full slip [length/force]"""

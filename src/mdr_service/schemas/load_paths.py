@@ -98,7 +98,7 @@ class History(LoadPath):
     normal: NormalPoints
     tangential: TangentialPoints
     samples_per_step: _Count = 1
-    """Number of samples per load step, even in the controls, the last at its end [1]"""
+    """Number of samples per load step, evenly spaced in the controls, the last at its end [1]"""
 
     @property
     def steps(self) -> int:
@@ -116,9 +116,9 @@ class Cycles(LoadPath):
     count: _Count = 1
     """Number of cycles [1]"""
     samples_per_step: _Count = ABSENT
-    """Number of samples per load step, even in the controls, the last at its end; by default 20
-    where a depth and a tangential force, or a normal force and a displacement, both oscillate, else
-    1 [1]"""
+    """Number of samples per load step, evenly spaced in the controls, the last at its end; by
+    default 20 where a depth and a tangential force, or a normal force and a displacement, both
+    oscillate, else 1 [1]"""
 
     @property
     def steps(self) -> int:
@@ -162,8 +162,8 @@ class HistoryQuery(Query, json_schema_extra={"allOf": [one_of("history", "cycles
     cycles: Cycles = ABSENT
     """In place of `history`: identical cycles of the tangential load."""
     initial_state: HistoryState = ABSENT
-    """`final_state` of a history of this contact and these controls, which is carried on; with
-    `history` only."""
+    """`final_state` of an earlier history of the same contact and controls, which `history`
+    continues."""
     return_state: bool = False
     """Return `final_state`."""
 

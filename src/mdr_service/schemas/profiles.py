@@ -66,7 +66,7 @@ class TwoSpheresProfile(Strict):
 
     kind: Literal["two_spheres"]
     radii: Annotated[list[Signed], Field(min_length=2, max_length=2)]
-    """Radii R₁ of the first body and R₂ of the second, of a socket negative; 1/R₁ + 1/R₂ > 0
+    """Radius R₁ of the first body and R₂ of the second, negative for a socket; 1/R₁ + 1/R₂ > 0
     [length]"""
 
 
@@ -183,8 +183,8 @@ class TabulatedProfile(Strict):
     breaks: Annotated[list[Size], Field(max_length=_MAX_POINTS, fail_fast=True)] = Field(default=[])
     """Radii where slope or curvature jumps [length]"""
     uncertainty: Size | None = ABSENT
-    """Standard uncertainty of the heights; 0: the profile meets the points. Without it, the scatter
-    of the points, as rounding or noise cause it [length]"""
+    """Standard uncertainty of the heights, by default estimated from the scatter of the points;
+    with 0 the profile meets the points [length]"""
 
 
 Profile = Annotated[

@@ -30,7 +30,7 @@ def _flat(result: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, An
     """Yield the members of a result, those of nested objects with the names joined by dots."""
     for name, value in result.items():
         if name in {"final_state", "holds_while"}:
-            # Their lists differ in length; JSON has them.
+            # The lists of these members differ in length; only JSON holds them.
             continue
         if isinstance(value, Mapping):
             yield from _flat(value, f"{prefix}{name}.")

@@ -13,7 +13,7 @@ from mdr_service.schemas.contacts import Axes
 from mdr_service.schemas.quantities import described, heading
 
 Array = NDArray[np.float64]
-# Of more loads than this an evenly spaced selection is drawn.
+# Maximum number of loads drawn; of more, an evenly spaced selection is drawn.
 _DRAWN: Final = 6
 LINE: Final = 30
 """Fewer points than this are marks without a line."""
@@ -160,7 +160,7 @@ def _selection(count: int) -> tuple[str, list[int]]:
 
 
 def _varied(query: Any, result: Mapping[str, Any]) -> tuple[str, list[float]]:
-    """Return the name and values of the load that tells curves apart: it has the most values."""
+    """Return name and values of the load that distinguishes curves: it has the most values."""
     if query.axes.x == "cycles":
         return "cycles", result["cycles"]
     lists = [(each.control, each.value) for each in query.controls.values() if each.count > 1]
