@@ -53,12 +53,12 @@ class LeastSquaresFit(validity.ContactResults):
 
     @property
     def standard_errors(self) -> Array:
-        """Standard deviations of the fitted parameters, shape (n,)."""
+        """Standard errors of the fitted parameters, shape (n,)."""
         return np.asarray(np.linalg.norm(self.effects, axis=1))
 
     @property
     def correlation(self) -> Array:
-        """Their correlation, shape (n, n) [1]."""
+        """Correlation of the fitted parameters, shape (n, n) [1]."""
         parts = self.effects / self.standard_errors[:, None]
         return np.asarray(parts @ parts.T)
 
