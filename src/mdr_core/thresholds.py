@@ -2,8 +2,8 @@
 
 Each follows from the contact radius a, g'(a) and F_N(a) to first order in the tolerance t:
 
-* adhesion: w = E* (t a g'(a))^2/(2 pi a) changes the contact radius under a given force; under a
-  flat punch w = E* (t d)^2/(2 pi a) changes the depth;
+* adhesion: w = E* (t a g'(a))^2/(2 pi a) changes the contact radius under a given force; a flat
+  punch has the same depth under its force, and at w = E* (t d)^2/(2 pi a) pulls off at t d;
 * slip: F_x/mu = F_N(a) - F_N(a (1 - 2 t)) changes the tangential compliance;
 * thickness: h at which a rigid base changes the force at a given depth;
 * yield: Y = 2 tau_max below a paraboloid (Tresca);
@@ -91,7 +91,7 @@ def of_contact(contact: NormalContact, tolerance: float) -> tuple[Threshold, ...
         stick = np.maximum(a * (1 - 2 * tolerance), profile.first_radius)
         within = 0.0 if flat else e_star * profile.force_within(np.ravel(stick)).reshape(a.shape)
     slip, friction = contact.normal_force - within, "tangential_force / friction_coefficient"
-    changes = "indentation_depth" if flat else "contact_radius"
+    changes = "pull_off_depth" if flat else "contact_radius"
     thickness = a / stiffening(tolerance, contact.material)
     found = [
         Threshold("adhesion", "work_of_adhesion", work, changes, "adhesion"),

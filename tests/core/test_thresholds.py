@@ -53,7 +53,7 @@ def test_adhesion_and_slip(profile: Profile, radius: float, tolerance: float) ->
     assert low < slipping.tangential_displacement / stick - 1 < high
 
 
-def test_flat_punch_sticks_up_to_full_slip_and_sinks_by_adhesion() -> None:
+def test_flat_punch_sticks_up_to_full_slip_and_pulls_off_at_the_tolerance() -> None:
     contact = normal.solve(FlatPunch(1.0), 1.0, indentation_depth=0.1)
     limits = _limits(contact, 0.01)
     assert limits["slip"] == pytest.approx(contact.normal_force, rel=1e-15, abs=0)
