@@ -148,7 +148,7 @@ def linear(
     return squares, factors, middle - factors * mean
 
 
-class Model(ABC):
+class CurveModel(ABC):
     """Model of the forces of a measured curve, and its least squares."""
 
     force: Array

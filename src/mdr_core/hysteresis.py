@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from mdr_core import residuals, tangential
 from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
-from mdr_core.estimation import LeastSquaresFit, Model, Parameters, linear, require_fitted
+from mdr_core.estimation import CurveModel, LeastSquaresFit, Parameters, linear, require_fitted
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
@@ -189,7 +189,7 @@ def solve(
 
 
 @dataclass(frozen=True, eq=False)
-class _Loop(Model):
+class _Loop(CurveModel):
     """Measured loop, and the model that is fitted to it."""
 
     contact: NormalContact

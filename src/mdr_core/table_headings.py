@@ -63,12 +63,12 @@ class Title(NamedTuple):
         return [word for word in re.split(r"[\W\d_]+", self.name.lower()) if word]
 
     def has(self, parts: Sequence[str]) -> bool:
-        """Return whether the name has one of the parts, its words written together."""
+        """Return True if the name has one of the parts, its words written together."""
         return any(part in "".join(self.words) for part in parts)
 
     @property
     def falls(self) -> bool:
-        """Whether it is a depth that falls towards the sample, such as a separation."""
+        """True for a depth that falls towards the sample, such as a separation."""
         return self.has(_FALLING)
 
 

@@ -15,9 +15,9 @@ from typing import ClassVar, Final, Self
 
 import numpy as np
 
-from mdr_core import adhesion, estimation, normal
+from mdr_core import adhesion, normal
 from mdr_core.errors import InputError
-from mdr_core.estimation import Parameters, linear
+from mdr_core.estimation import CurveModel, Parameters, linear
 from mdr_core.layer import DepthCurve
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array, Flags, Indices
@@ -39,7 +39,7 @@ LEAST_C: Final = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Model(estimation.Model):
+class Model(CurveModel):
     """Curve, and the model that is fitted to it."""
 
     profile: Profile
