@@ -353,7 +353,7 @@ def test_fit_reaches_minimum_to_rounding_error(size: float) -> None:
     assert fit.solve(BALL, indentation_depth=depth, normal_force=force).error_estimate < 1e-12
 
 
-class Scaled(estimation.Model):
+class Scaled(estimation.CurveModel):
     """Forces that are the parameters, with slopes that are not numbers beyond a limit."""
 
     argument = "indentation_depth"
