@@ -345,6 +345,19 @@ def test_one_depth_beyond_the_least_force_is_refused() -> None:
         fit.solve(BALL, indentation_depth=depth, normal_force=force, fit=names)
 
 
+@pytest.mark.parametrize("least", [0.0, -1.0])
+def test_zero_forces_beyond_the_least_force_are_refused(least: float) -> None:
+    force = np.append(least, np.zeros(29))
+    with pytest.raises(mdr.InputError, match="told apart"):
+        fit.solve(
+            mdr.Cone(0.4),
+            indentation_depth=np.linspace(-1.0, 1.0, 30),
+            normal_force=force,
+            fit=("force_offset", "work_of_adhesion"),
+            e_star=1.0,
+        )
+
+
 @pytest.mark.parametrize("size", [0.0, 1e-4, 1e-2])
 def test_fit_reaches_minimum_to_rounding_error(size: float) -> None:
     depth = np.linspace(-0.1, 0.5, 300)

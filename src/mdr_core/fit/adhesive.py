@@ -12,6 +12,7 @@ import numpy as np
 from scipy.special import fdtrc
 
 from mdr_core import adhesion
+from mdr_core.doubles import TINY
 from mdr_core.errors import InputError, Notice
 from mdr_core.estimation import Precision
 from mdr_core.fit.model import LEAST_C, Model
@@ -120,9 +121,12 @@ def _is_noise(model: Model, more: Model) -> bool:
 
 
 def _least(model: Model) -> float:
-    """Return the sum of squares, at least that of residuals that are rounding error."""
+    """Return the sum of squares, at least that of residuals that are rounding error.
+
+    It is a divisor, and zero forces have no rounding error.
+    """
     rounding = ROUNDING * float(np.abs(model.force).max())
-    return max(model.squares, model.free * rounding**2)
+    return max(model.squares, model.free * rounding**2, TINY)
 
 
 def _states(model: Model) -> adhesion.Curve:
