@@ -9,7 +9,7 @@ Source: mindlin-deresiewicz; notes, §15.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
+from itertools import compress, product
 from math import inf
 from typing import ClassVar, Final
 
@@ -19,7 +19,14 @@ from numpy.typing import ArrayLike
 from mdr_core import residuals, tangential
 from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
-from mdr_core.estimation import CurveModel, LeastSquaresFit, Parameters, linear, require_fitted
+from mdr_core.estimation import (
+    CurveModel,
+    LeastSquaresFit,
+    Parameters,
+    Precision,
+    linear,
+    require_fitted,
+)
 from mdr_core.normal import NormalContact
 from mdr_core.tangential import TangentialContact
 from mdr_core.typing import Array
@@ -323,7 +330,7 @@ class _Loop(CurveModel):
 
     def result(self) -> LoopFit:
         """Return the fit, or an InputError."""
-        found, residual, (forces, _) = self.best, self.residual, self.fitted
+        found, residual, (forces, slopes) = self.best, self.residual, self.fitted
         try:
             precision = self.precision
         except InputError:
@@ -338,7 +345,13 @@ class _Loop(CurveModel):
         if rig < _NO_WORSE * errors.get("rig_compliance", 0.0):
             message = "no compliance of the rig is seen: rig_compliance is at its bound 0"
             notices = (*notices, Notice("bound", message, rig, None))
+        # A compliance that would become negative stays at its bound.
+        steps = zip(self.fit, precision.changes(residual), strict=True)
+        free = [name != "rig_compliance" or rig + step >= 0 for name, step in steps]
+        movable = Precision.of(slopes[:, free], [*compress(self.fit, free)], self.argument)
         law = self.first_loading(found)
+        # Near full slip the stick radius has a larger error than the force.
+        relative = float(np.max(law.step_error))
         most = float(law.tangential_displacement[-1])
         moduli = found["g_star"], found["friction_coefficient"]
         turning = tangential.solve(self.contact, *moduli, tangential_displacement=most)
@@ -356,7 +369,7 @@ class _Loop(CurveModel):
             noise=self.scatter,
             misfit=misfit,
             dissipated_energy_error=float(energy_error),
-            error_estimate=precision.error(float(law.error_estimate), residual, self.force),
+            error_estimate=movable.error(relative, residual, self.force),
             notices=notices,
         )
 

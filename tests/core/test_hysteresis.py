@@ -189,6 +189,19 @@ def test_residuals_that_are_not_noise_are_a_warning() -> None:
         assert warned >= 19 if code else warned <= 2, code
 
 
+def test_error_estimate_is_small_at_full_slip_and_at_a_bound() -> None:
+    contact, u, force = measured(Paraboloid(0.01), 2.0)
+    random, at_bound = np.random.default_rng(2), 0
+    for noise in (0.0, *[0.01] * 8):
+        noisy = force + random.normal(0.0, noise * force.max() or 1e-300, force.size)
+        found = hysteresis.solve(contact, tangential_displacement=u, tangential_force=noisy)
+        at_bound += "bound" in {notice.code for notice in found.notices}
+        assert found.error_estimate < 1e-9
+    assert at_bound >= 2
+    exact = hysteresis.solve(contact, tangential_displacement=u, tangential_force=force)
+    assert abs(exact.g_star / G_STAR - 1) <= exact.error_estimate
+
+
 def test_rig_that_the_loop_does_not_show_is_at_its_bound() -> None:
     contact, u, force = measured(Paraboloid(0.01), 2.0)
     random, bounds = np.random.default_rng(2), 0
