@@ -370,11 +370,14 @@ class Scaled(estimation.CurveModel):
     """Forces that are the parameters, with slopes that are not numbers beyond a limit."""
 
     argument = "indentation_depth"
-    best: dict[str, float] = {}  # noqa: RUF012
 
     def __init__(self, limit: float, *force: float) -> None:
         self.limit, self.force = limit, np.array(force)
         self.fit = tuple("ab"[: len(force)])
+
+    @property
+    def best(self) -> dict[str, float]:
+        return {}
 
     def at(self, parameters: dict[str, float]) -> tuple[Array, Array]:
         x = np.array([parameters[name] for name in self.fit])
