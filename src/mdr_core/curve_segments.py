@@ -14,6 +14,8 @@ from mdr_core import residuals
 from mdr_core.doubles import EPS, TINY
 from mdr_core.typing import Array, Flags
 
+BRANCHES: Final = "loading", "unloading"
+"""Segments that are fitted."""
 # Lengths of the searched windows, over the duration of the curve.
 _WINDOWS: Final = np.geomspace(0.05, 0.4, 7)
 # Smallest number of points in a window, and of a line of drift.

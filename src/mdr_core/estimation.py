@@ -79,6 +79,11 @@ class Precision:
         """Changes of the parameters by those of the curve along `q`, shape (n, n)."""
         return self.inverse / self.scale[:, None]
 
+    @property
+    def deviations(self) -> Array:
+        """Standard deviations of the parameters, over that of the curve, shape (n,)."""
+        return np.asarray(np.linalg.norm(self.effects, axis=1))
+
     @classmethod
     def of(cls, slopes: Array, names: Sequence[str], curve: str) -> Self:
         """Return the precision, or an InputError if the curve cannot tell parameters apart.

@@ -336,7 +336,8 @@ class _Loop(CurveModel):
         except InputError:
             raise self.refused() from None
         effects = self.scatter * precision.effects
-        errors = dict(zip(self.fit, np.linalg.norm(effects, axis=1).tolist(), strict=True))
+        deviations = self.scatter * precision.deviations
+        errors = dict(zip(self.fit, deviations.tolist(), strict=True))
         if any(_HALF * errors.get(name, 0.0) > _WIDEST * found[name] for name in _LAW):
             raise self.refused()
         tests = residuals.misfit(self.displacement, precision.q, residual, self.force, in_time=True)

@@ -208,7 +208,7 @@ def solve(
     require_tolerance(rtol)
     require_single_positive(("normal_mass",), normal_mass)
     require_single_positive(("tangential_mass",), tangential_mass)
-    # The mass as a whole number of NumPy has no negative.
+    # NumPy's unsigned integers have no negative values.
     normal_mass, tangential_mass = float(normal_mass), float(tangential_mass)
     speeds, along = _velocities(normal_velocity, tangential_velocity)
     last = _largest_coordinates(profile, normal_mass / (2 * start.e_star) * np.square(speeds))

@@ -11,7 +11,7 @@ RIGID: Final = "rigid"
 Base = Literal["bonded", "frictionless"]
 """Condition of a layer at its base: it sticks to it, or slides on it without friction."""
 Held = Literal["contacts", "stem", "free", "block"]
-"""How a round body is held: between two contacts, on a stem or by its equator, as a free body whose
+"""Support of a round body: between two contacts, on a stem or by its equator, as a free body whose
 depth counts against its centre, or as a bump of a block."""
 UNUSABLE: Final = (
     "is computed with in normal and adhesive contact, its surface fields and fits alone: with "
@@ -86,7 +86,7 @@ class Material:
     shear_modulus: float | None = None
     """G of a twist, 1/G = 1/G1 + 1/G2 [pressure]; None where it is not given."""
     held: tuple[Held, Held] = ("contacts", "contacts")
-    """How the bodies are held, if they are round."""
+    """Supports of the bodies, if they are round."""
     layer: Layer | None = None
     """Layer with which `layer.solve` computes; E* is that of half-spaces of the same materials."""
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from importlib.resources import files
 from typing import Final, NamedTuple
 
+from mdr_core.curve_segments import BRANCHES
 from mdr_core.errors import InputError
 
 _WORDS: Final = json.loads(files("mdr_core").joinpath("table_words.json").read_text("utf-8"))
@@ -25,7 +26,6 @@ _SEGMENTS: Final = {kind: frozenset(words) for kind, words in _WORDS["segments"]
 UNITS: Final = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "nm": 1e-9}
 """Units of length of results, in metres."""
 PROFILE, CURVE = ("radius", "height"), ("depth", "force")
-BRANCHES: Final = ["loading", "unloading"]
 HEADS: Final = {"radius": "r", "height": "f", "depth": "d", "force": "F"}
 MEASURES: Final = dict.fromkeys(HEADS, "length") | {
     each: each for each in ("force", "area", "time")
@@ -47,6 +47,11 @@ _FACTOR: Final = (
 )
 
 
+def _words(text: str) -> list[str]:
+    """Return the words of a text in lower case."""
+    return [word for word in re.split(r"[\W\d_]+", text.lower()) if word]
+
+
 class Title(NamedTuple):
     """Heading of a column."""
 
@@ -60,7 +65,7 @@ class Title(NamedTuple):
     @property
     def words(self) -> list[str]:
         """Words of the name in lower case."""
-        return [word for word in re.split(r"[\W\d_]+", self.name.lower()) if word]
+        return _words(self.name)
 
     def has(self, parts: Sequence[str]) -> bool:
         """Return True if the name has one of the parts, its words written together."""
@@ -246,7 +251,7 @@ def best_of(titles: Sequence[Title], numeric: Sequence[int], quantity: str) -> l
 def _are_branches(titles: Sequence[Title]) -> bool:
     """Return whether two columns are one quantity on loading and on unloading: z_Ex and z_Rt."""
     kinds = sorted(str(segment_of(each.name)) for each in titles)
-    return kinds == BRANCHES and titles[0].unit == titles[1].unit
+    return tuple(kinds) == BRANCHES and titles[0].unit == titles[1].unit
 
 
 def segments_of(columns: Sequence[list[str]]) -> list[str] | None:
@@ -266,8 +271,8 @@ def segments_of(columns: Sequence[list[str]]) -> list[str] | None:
 
 def segment_of(text: str) -> str | None:
     """Return the kind of segment that a word of a text names, or None."""
-    words = set(re.split(r"[\W\d_]+", text.lower()))
-    return next((kind for kind, known in _SEGMENTS.items() if words & known), None)
+    words = _words(text)
+    return next((kind for kind, known in _SEGMENTS.items() if not known.isdisjoint(words)), None)
 
 
 def unit_of(text: str) -> tuple[str, str, float] | None:

@@ -7,10 +7,10 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from mdr_core.curve_segments import BRANCHES
 from mdr_core.doubles import TINY
 from mdr_core.errors import InputError
 from mdr_core.table_headings import (
-    BRANCHES,
     CURVE,
     HEADS,
     MEASURES,
@@ -90,7 +90,7 @@ class MeasuredCurve(NamedTuple):
     segments: list[str] | None = None
     """Kind of the segment of each point, None unless the file names it."""
     is_reversed: bool = False
-    """Whether the depths are the negative of a separation, which falls towards the sample."""
+    """True if the depths are the negative of a separation, which falls towards the sample."""
 
 
 class ParsedFile(NamedTuple):
@@ -107,8 +107,11 @@ class ParsedFile(NamedTuple):
     """Times of a curve from its first point [s], of a non-decreasing column with a unit."""
     segments: list[str] | None = None
     """Kind of the segment of each point of a curve, if the file names it."""
-    is_reversed: bool = False
-    """Whether the depths are the negative of a column that falls towards the sample."""
+
+    @property
+    def is_reversed(self) -> bool:
+        """True if the depths are the negative of a column that falls towards the sample."""
+        return any(self.titles[i].falls for i in self.taken.get("depth", ()))
 
 
 def read_table(
@@ -345,7 +348,7 @@ def _taken(
 ) -> ParsedFile:
     """Return the table with the numbers of the columns at the places, see `places_of`."""
     taken: dict[str, list[int]] = {}
-    values, is_reversed = [], False
+    values = []
     lines = [row.line for row in rows] * len(places[0])
     for columns, wanted in zip(places, kind, strict=True):
         title = titles[columns[0]]
@@ -364,9 +367,9 @@ def _taken(
             if bad.any():
                 raise refuse(lines[int(np.argmax(bad))], detail)
         if wanted == "depth" and title.falls:
-            is_reversed, numbers = True, 0.0 - numbers
+            numbers = 0.0 - numbers
         values.append(np.sqrt(numbers / np.pi) if is_area else numbers)
-    return ParsedFile(titles, taken, values, lines, is_reversed=is_reversed)
+    return ParsedFile(titles, taken, values, lines)
 
 
 def _require_profile(table: ParsedFile) -> None:

@@ -145,8 +145,8 @@ def _least_stable(model: Model) -> float:
     depth += model.best["contact_point"]
     if "contact_point" not in model.fit:
         return depth
-    effects = model.precision.effects[model.fit.index("contact_point")]
-    return depth - _NEAR * model.scatter * float(np.linalg.norm(effects))
+    deviation = float(model.precision.deviations[model.fit.index("contact_point")])
+    return depth - _NEAR * model.scatter * deviation
 
 
 def _touching(curve: Model) -> Model:

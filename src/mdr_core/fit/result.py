@@ -152,7 +152,7 @@ def _open(model: Model) -> tuple[Notice, ...]:
         return ()
     point, place, free = model.best["contact_point"], model.fit.index("contact_point"), model.free
     quantile = float(stdtrit(free, 0.975))
-    half = quantile * scatter * float(np.linalg.norm(model.precision.effects[place]))
+    half = quantile * scatter * float(model.precision.deviations[place])
     least = free * scatter**2 * (1 + quantile**2 / free)
 
     far, halves = model.farthest, half * np.multiply.outer([1 / _LOPSIDED, _LOPSIDED], [-1, 1])

@@ -5,13 +5,13 @@ Source: notes, §15.
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Final, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mdr_core import curve_segments
-from mdr_core.curve_segments import Drift, phases
+from mdr_core.curve_segments import BRANCHES, Drift, phases
 from mdr_core.errors import InputError
 from mdr_core.estimation import require_fitted
 from mdr_core.fit import adhesive
@@ -31,9 +31,6 @@ from mdr_core.validation import (
     require_type,
     single,
 )
-
-# Branches of a curve that are fitted.
-_SEGMENTS: Final = "loading", "unloading"
 
 
 def solve(
@@ -229,8 +226,8 @@ def _drift(
 
 def _of_segment(kinds: NDArray[np.str_], segment: str) -> Indices:
     """Return the points of a branch, or an InputError if there are fewer than two."""
-    if segment not in _SEGMENTS:
-        raise InputError(("segment",), f"must be one of {', '.join(_SEGMENTS)}")
+    if segment not in BRANCHES:
+        raise InputError(("segment",), f"must be one of {', '.join(BRANCHES)}")
     points = np.flatnonzero(kinds == segment)
     if points.size < 2:
         raise InputError(("segment",), f"is not in the curve: there is no {segment}")

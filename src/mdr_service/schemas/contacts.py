@@ -118,8 +118,8 @@ class BodyMaterial(Strict):
     poissons_ratio: PoissonsRatio
     """Poisson's ratio ν [1]"""
     held: materials.Held = ABSENT
-    """How a round body is held, on which `model_error` depends: between two `contacts` (default),
-    on a `stem` or by its equator, `free`, or as a bump of a `block`. Impacts take `free`"""
+    """Support of a round body, on which `model_error` depends: between two `contacts` (default), on
+    a `stem` or by its equator, `free`, or as a bump of a `block`. Impacts take `free`"""
 
 
 # The schema is an enumeration, because client generators accept no constant in a choice.
@@ -143,7 +143,7 @@ class ElasticLayer(Strict):
     thickness: Positive
     """Thickness h of the layer [length]"""
     base: materials.Base
-    """How the layer is held: `bonded` to its base, or sliding on it without friction"""
+    """Condition of the layer at its base: `bonded`, or `frictionless` if it slides"""
     poissons_ratio: PoissonsRatio = ABSENT
     """Poisson's ratio ν of the layer, needed on a bonded base unless the material has it [1]"""
 
