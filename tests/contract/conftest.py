@@ -55,8 +55,10 @@ class Visit:
         self.drawn()
 
     def drawn(self) -> None:
-        """Wait until the charts show the case of the form."""
-        shown = "document.body.dataset.drawn === location.search + location.hash"
+        """Wait until the charts and the address show the case of the form."""
+        # A form that changes is pending at once; its address follows later.
+        shown = """document.body.dataset.state !== "pending" &&
+            document.body.dataset.drawn === location.search + location.hash"""
         for _ in range(int(PATIENCE * MILLISECONDS / 50)):
             if self.page.evaluate(shown):
                 return
