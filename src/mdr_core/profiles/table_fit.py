@@ -50,6 +50,12 @@ _UNSEEN: Final = 1e-8
 _LEAST_SIGMA: Final = 32 * ADJACENT
 # Lowest g'/x, over that of the paraboloid through the last point: g increases strictly.
 _FLOOR: Final = 1e-9
+# Largest noise over the errors of the digits, root mean square, at which these are the noise and
+# weight the points.
+_ROUNDED: Final = 2.0
+# Share of the excess of a residual in the error of the data, by trial: of random tables the error
+# covers 97.2 % with a share of 1, 97.7 % with this, and 98.0 % with 2, whose median is 6 % wider.
+_EXCESS: Final = 1.5
 # Quantile of the error of the data: two standard deviations of a normal distribution.
 _QUANTILE: Final = 0.97725
 # Deviation from the points, root mean square over the height, from which the shape has no contact
@@ -94,20 +100,13 @@ def _likeliest(points: TablePoints, uncertainty: float | None) -> TableFit:
     ----------
     uncertainty : standard uncertainty of the heights over their range; None to estimate it.
     """
-    basis = TableBasis(points)
-
-    def models(jumps: Flags) -> "list[_Model]":
-        return [_Model(basis, uncertainty, jumps, grading) for grading in _GRADINGS]
-
-    tried = models(np.zeros(1 + len(points.breaks), dtype=bool))
-    before, best = None, min(tried, key=lambda each: each.least)
-    while best is not before:
-        for i in np.flatnonzero(~best.jumps):
-            tried += models(best.jumps | (np.arange(best.jumps.size) == i))
-        seen = [each for each in tried if each.smallest_jump > _LEAST_JUMP]
-        before, best = best, min(seen, key=lambda each: each.least)
+    tried, seen = _searched(TableBasis(points), uncertainty)
+    noise = seen[0].sigma[seen[0].at]
+    if uncertainty is None and noise < _ROUNDED * root_mean_square(points.rounding):
+        tried, seen = _searched(TableBasis(points.by_digits), uncertainty)
+    basis = seen[0].basis
     found: list[tuple[float, Array, _Model, float]] = []
-    for each in sorted(seen, key=lambda each: each.least):
+    for each in seen:
         if found and each.least >= min(score for score, *_ in found):
             break
         coefficients, excess = _admissible(basis, each)
@@ -117,6 +116,25 @@ def _likeliest(points: TablePoints, uncertainty: float | None) -> TableFit:
     _, coefficients, best, excess = min(found, key=lambda fit: fit[0])
     blind = bool(points.x[0] > basis.knots[1] / 2)
     return basis.fit(coefficients, *_spread(tried, best, excess, blind=blind))
+
+
+def _searched(
+    basis: TableBasis, uncertainty: float | None
+) -> tuple[list["_Model"], list["_Model"]]:
+    """Return all models that were tried, and those whose jumps are seen, the likeliest first."""
+
+    def models(jumps: Flags) -> "list[_Model]":
+        return [_Model(basis, uncertainty, jumps, grading) for grading in _GRADINGS]
+
+    tried = models(np.zeros(1 + len(basis.points.breaks), dtype=bool))
+    before, best = None, min(tried, key=lambda each: each.least)
+    while best is not before:
+        for i in np.flatnonzero(~best.jumps):
+            tried += models(best.jumps | (np.arange(best.jumps.size) == i))
+        jumping = [each for each in tried if each.smallest_jump > _LEAST_JUMP]
+        seen = sorted(jumping, key=lambda each: each.least)
+        before, best = best, seen[0]
+    return tried, seen
 
 
 def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
@@ -151,9 +169,9 @@ def _spread(
     """Return possible deviations of the coefficients (columns, n), odds, and the deciding point.
 
     The deviations are those of the posterior of all models and weights, to two standard deviations,
-    or to Student's quantile where the noise is estimated from the points; and for each point twice
-    its influence times the excess of its residual, when it is left out, over the expected one. The
-    odds are those of the tip, sharp or smooth, that was not chosen.
+    or to Student's quantile where the noise is estimated from the points; and for each point its
+    influence times a share of the excess of its residual, when it is left out, over the expected
+    one. The odds are those of the tip, sharp or smooth, that was not chosen.
 
     Parameters
     ----------
@@ -166,7 +184,7 @@ def _spread(
     odds = [np.exp((least[bool(each.jumps[0])] - each.score) / 2) for each in tried]
     total, center = sum(each.sum() for each in odds), best.mean(np.array([best.at]))
     left_out = best.excess()
-    parts, rival = [2 * left_out], 0.0
+    parts, rival = [_EXCESS * left_out], 0.0
     if excess > 1:
         at = np.array([best.at])
         noisier = best.weights.searchsorted(best.weights[at] * excess**2, side="right") - 1
@@ -282,7 +300,7 @@ class _Model:
         variance = least = 0 * whole + max(uncertainty or 0.0, _LEAST_SIGMA) ** 2
         freedom = max(self.left_over, 1)
         if uncertainty is None:
-            least = max(basis.points.rounding, _LEAST_SIGMA) ** 2
+            least = max(basis.points.least, _LEAST_SIGMA) ** 2
             variance = np.maximum(whole / freedom, least)
         self.sigma = np.sqrt(variance)
         # A noise that is estimated from the points is itself uncertain.

@@ -6,7 +6,7 @@ Source: notes, §5.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
 
@@ -22,7 +22,7 @@ _EXACT: Final = 1e-8
 _SAME: Final = np.sqrt(EPS)
 # Gap of radii that count as one in spacings and slopes, over the mean spacing at equal radii.
 _NEAR: Final = 1e-2
-# Rounded numbers: largest unit over the step between neighbours, and largest number of units: a
+# Rounded numbers: largest unit over the mean step between them, and largest number of units: a
 # smaller one is below `_EXACT`.
 _FINEST_STEP, _MOST_UNITS = 0.05, round(1 / (np.sqrt(12) * _EXACT))
 # Smallest error of a rounded height, over that of most.
@@ -41,13 +41,23 @@ class TablePoints:
     y: Array
     weight: Array
     """Weight of the deviation: square root of the number of points that were merged."""
+    rounding: Array
+    """Standard errors of the heights by the digits of the numbers."""
     distinct: Flags
     """Points that are not next to the one beyond."""
     breaks: tuple[float, ...]
     scale: tuple[float, float]
     """Last radius and height [length]."""
-    rounding: float
-    """Standard error of the heights by the digits of the numbers."""
+    least: float
+    """Lowest noise of the heights: the median of those errors; zero for heights of all digits."""
+
+    @property
+    def by_digits(self) -> "TablePoints":
+        """The points with weights by the errors of their digits, of which one is not zero."""
+        # On a flat an error of the radius is none of the height.
+        typical = np.median(self.rounding[self.rounding > 0])
+        weight = self.weight / (self.rounding / typical).clip(_LEAST_ERROR)
+        return replace(self, weight=weight)
 
 
 def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
@@ -64,21 +74,17 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
     if y @ curved <= 0:
         advice = off_axis(r, f) or "reverse their sign"
         raise InputError(("profile", "f"), f"the heights fall away from the axis: {advice}")
-    weight, rounding, distinct = np.sqrt(count), 0.0, np.diff(x, append=2.0) > _NEAR * x / x.size
-    # On an even grid the unit of the radii is the spacing, which is no rounding.
-    steps = np.array([1 / x.size, 1.0]) if x.size > 2 else np.zeros(2)
-    of_radius, of_height = map(_rounding, given, _FINEST_STEP * steps)
-    if max(of_radius, of_height) > _EXACT and distinct.sum() > 1:
+    distinct = np.diff(x, append=2.0) > _NEAR * x / x.size
+    of_radius, rounding = (np.bincount(group, _rounding(each, x.size)) / count for each in given)
+    least = float(np.median(rounding))
+    if max(of_radius.max(), least) > _EXACT and distinct.sum() > 1:
         # An error of the radius is one of the height on a slope.
         slope = np.interp(x, x[distinct], np.gradient(y[distinct], x[distinct]))
-        error = np.hypot(of_radius * slope, of_height)
-        # On a flat an error of the radius is none of the height.
-        typical = float(np.median(error[error > 0]))
-        weight = weight * typical / np.maximum(error, _LEAST_ERROR * typical)
-        # Heights with all digits tell of no rounding, nor do those on a grid.
-        rounding = typical * (0 < np.sqrt(12) * of_height < _FINEST_STEP / x.size)
+        rounding = np.hypot(of_radius * slope, rounding)
+        least = np.median(rounding[rounding > 0]) * (least > 0)
     scaled = tuple(b / end for b in breaks)
-    return TablePoints(x, y, weight, distinct, scaled, (end, height), rounding)
+    weight = np.sqrt(count)
+    return TablePoints(x, y, weight, rounding, distinct, scaled, (end, height), float(least))
 
 
 def off_axis(r: Array, f: Array) -> str:
@@ -107,10 +113,18 @@ def axis_of(r: Array, f: Array) -> tuple[float | None, float]:
     return (float(axis) if first < axis < last else None), bend
 
 
-def _rounding(values: Array, coarsest: float) -> float:
-    """Standard error of numbers that are multiples of a unit below a limit; else zero."""
+def _rounding(values: Array, points: int) -> Array:
+    """Standard errors of numbers that are multiples of a small unit; else zeros."""
     unit = _common_unit(values)
-    return unit / np.sqrt(12) if unit < coarsest else 0.0
+    # On a grid the unit is the spacing, which is no rounding.
+    if points < 3 or not 0 < unit < _FINEST_STEP / points:
+        return 0 * values
+    # Of numbers with as many significant digits each, the larger ones are rounded to more units;
+    # a power of ten is the last number of its decade.
+    counts = [round(count) for count in (values / unit).tolist()]
+    digits = max(len(str(count).rstrip("0")) for count in counts)
+    places = np.array([max(len(str(max(count - 1, 0))) - digits, 0) for count in counts])
+    return np.asarray(unit * 10.0**places / np.sqrt(12))
 
 
 def _common_unit(values: Array) -> float:
