@@ -3,6 +3,8 @@
 Source: notes, §4.
 """
 
+from collections.abc import Sequence
+from functools import reduce
 from math import factorial
 from typing import Final
 
@@ -19,13 +21,18 @@ _ATAN: Final = [(-1) ** k / (2 * k + 3) for k in range(19, -1, -1)]
 _TANH: Final = [2 * k / factorial(2 * k + 1) for k in range(7, 0, -1)]
 
 
+def _polynomial(coefficients: Sequence[float], u: Array) -> Array:
+    """Horner's scheme, for a number in a tenth of the time of NumPy's."""
+    return reduce(lambda value, each: value * u + each, coefficients, 0.0 * u)
+
+
 def atan_gap(s: Array, b: Parameter) -> Array:
     """Return s - b arctan(s/b) for s >= 0, b > 0 [length]: s^3/(3 b^2) for small s."""
     z = s / b
     return piecewise(
         z,
         _THRESHOLD,
-        lambda z: s * (z * z) * np.polyval(_ATAN, z * z),
+        lambda z: s * (z * z) * _polynomial(_ATAN, z * z),
         lambda _: s - b * np.arctan(z),
     )
 
@@ -35,6 +42,6 @@ def tanh_gap(v: Array) -> Array:
     return piecewise(
         v,
         _THRESHOLD,
-        lambda v: v * (v * v) * np.polyval(_TANH, v * v) / np.cosh(v),
+        lambda v: v * (v * v) * _polynomial(_TANH, v * v) / np.cosh(v),
         lambda v: v - np.tanh(v),
     )
