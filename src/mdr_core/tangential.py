@@ -101,9 +101,10 @@ class TangentialContact(SlippingContact):
     @cached_property
     def tangential_displacement(self) -> Array:
         """u_x = mu (E*/G*) [d(a) - d(c)] [length]. Source: mdr-5, Eqs. (5.20), (5.33)."""
-        partial = self._over_annulus(equivalent_1d.depth_step, self.g_star)
-        slid = self._full_slip_displacement + self.excess
-        return self.sign * where(self.full_slip, slid, partial)
+        size = self._over_annulus(equivalent_1d.depth_step, self.g_star)
+        if some(self.full_slip):
+            size = where(self.full_slip, self._full_slip_displacement + self.excess, size)
+        return self.sign * size
 
     def _over_annulus(self, step: _Step, divisor: Parameter) -> Array:
         """Step of depth or force over the annulus, times mu E*/divisor."""
