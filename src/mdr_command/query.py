@@ -162,7 +162,7 @@ def _content(arguments: argparse.Namespace) -> bytes:
 def _curve(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object]:
     """Return the lists of the curve in a file, in metres, newtons and seconds.
 
-    If the file names the segments, they are those of a fit without the drift of a hold.
+    If the file names the segments, they select the points, except in a fit with `drift`.
     """
     if not arguments.file:
         raise InputError((), "a fit by options needs the file of its curve: mdr fit curve.csv")

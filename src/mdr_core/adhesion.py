@@ -38,8 +38,8 @@ from mdr_core.typing import Array, Indices
 
 # Parts of c at which a state loses its stability.
 _SHARES: Final = {"indentation_depth": 0.5, "normal_force": 1.5}
-# Distances of nodes from the axis and from breaks, 12 in a decade: phi bends over a factor of e or
-# more of them.
+# Distances of nodes from the axis and from breaks. Twelve in a decade resolve phi, which bends over
+# a factor of e or more.
 _DISTANCES: Final = np.logspace(-75, 75, 1801)
 # Nodes between the breaks of a table, where g' is a polynomial.
 _IN_PIECE: Final = 9
@@ -310,7 +310,7 @@ class AdhesiveContact(NormalContact):
 
     @property
     def _slope_error(self) -> Array:
-        """Relative error of g'(a) by the error of the contact radius, large next to a flat [1]."""
+        """Relative error of g'(a) due to that of the contact radius, large next to a flat [1]."""
         profile, edge = self.profile, self.coordinate
         if profile.is_flat_punch:
             return full(0.0, edge)

@@ -72,16 +72,16 @@ class Precision:
     q: Array
     """Orthonormal slopes, shape (k, n)."""
     inverse: Array
-    """Changes of the parameters, times `scale`, by those of the curve along `q`, shape (n, n)."""
+    """Derivatives of the parameters, times `scale`, in the curve along `q`, shape (n, n)."""
 
     @property
     def effects(self) -> Array:
-        """Changes of the parameters by those of the curve along `q`, shape (n, n)."""
+        """Derivatives of the parameters in the curve along `q`, shape (n, n)."""
         return self.inverse / self.scale[:, None]
 
     @property
     def deviations(self) -> Array:
-        """Standard deviations of the parameters, over that of the curve, shape (n,)."""
+        """Standard deviations of the parameters per standard deviation of the curve, (n,)."""
         return np.asarray(np.linalg.norm(self.effects, axis=1))
 
     @classmethod

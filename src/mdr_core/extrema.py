@@ -112,7 +112,7 @@ def _of_similar(profile: Profile, edge: Array) -> Array:
 
 
 def pressure_and_slope(profile: Profile, edge: Array) -> tuple[Array, Array]:
-    """Return the largest pressure over E* and the derivative of its logarithm by that of the edge.
+    """Return the largest pressure over E* and its logarithmic derivative in the edge.
 
     Parameters: see `largest_stress`.
     """

@@ -22,8 +22,8 @@ ASSUMED_RATIO: Final = 0.3
 _ASSUMED_BETA: Final = (1 - 2 * ASSUMED_RATIO) / (2 * (1 - ASSUMED_RATIO))
 # Coefficient of a paraboloid in terms of a/R, 3/(2 pi). Source: notes, §8.
 _RADIAL_ROUND: Final = 0.477
-# Compliance that a half-space lacks, over its own 0.46/(E b): that of a cylinder of radius b and
-# length 6 b is L/(pi E b^2).
+# Compliance that a half-space lacks, over its own 0.46/(E b): a cylinder of radius b and
+# length 6 b has L/(pi E b^2).
 _WALL: Final = 3.0
 # Increase of the force at a given depth to first order, over a/R and the share of a body in the
 # compliance, by how the body is held. Source: notes, §8.
@@ -60,18 +60,18 @@ class LoadedContact(Protocol):
 
 
 class Errors(NamedTuple):
-    """Estimated relative errors of each load by a flat half-space or layer as the model [1]."""
+    """Estimated relative errors due to the model, a flat half-space or layer, for each load [1]."""
 
     parts: tuple[Array, ...]
     """Parts of the error of the force at a given depth, which exceeds the error of the depth under
-    a given force: by the finite size of round bodies, by the neglected radial displacement,
-    by the slope, and by the side wall of an elastic punch."""
+    a given force. Their causes: the finite size of round bodies, the neglected radial displacement,
+    the slope, and the side wall of an elastic punch."""
     steepness: Array
     """Slope at the contact edge, or largest a/R of round bodies."""
     radius: Array | None = None
     """Error of the contact radius under a given force; None where the bodies are not round."""
     pressure: Array | None = None
-    """Error of the largest pressure under a given force; None likewise."""
+    """Error of the largest pressure under a given force; None where the bodies are not round."""
 
     @property
     def force(self) -> Array:
@@ -158,7 +158,7 @@ def _base(material: Material) -> float:
 
 
 def thickness_at_a_force(contact: LoadedContact, h: float) -> Array:
-    """Relative error of radius and pressure under a force by a rigid base at the depth h [1].
+    """Relative error of radius and pressure under a force due to a rigid base at depth h [1].
 
     (2/3) (s/pi) (a/h)^3 int_0^oo (1 - L) w^2 dw, to first order in (a/h)^3, with the share s of the
     more compliant body. Source: manual, Contact with a layer.
@@ -177,7 +177,7 @@ def stiffening(tolerance: float, material: Material) -> float:
 
 
 def _on_layer(contact: LoadedContact) -> Parameter:
-    """Relative error of the force by the radial displacement of a layer, 0 without one [1].
+    """Relative error of the force due to the radial displacement of a layer, 0 without one [1].
 
     Over the slope at the edge it is 0.3 (a/h)^2 on thin bonded incompressible layers, and far less
     on compressible ones. Source: manual, Contact with a layer, finite elements.

@@ -35,7 +35,7 @@ from mdr_core.validation import (
 
 # Numbers of samples of the compression, used one after the other.
 _SAMPLES: Final = tuple(12 << doublings for doublings in range(11))
-# Number of differences between two solutions that an estimate needs. The error falls by a factor of
+# Number of differences of successive solutions in an estimate. The error falls by a factor of
 # four with each doubling, but unevenly, because slip begins and ends anywhere between two samples.
 # In 200 random impacts single differences understated it by a factor of up to 4, and the largest of
 # three did not.

@@ -1,7 +1,7 @@
 """Names and units of the columns of a file.
 
-Nothing is guessed: a column is that of a quantity if its unit or its name says so, or if it is the
-only one left of two. What is not understood is an error that names the line and the remedy.
+Nothing is guessed: the unit or the name of a column decides its quantity, or it is the only column
+left of two. An unclear heading is an error that names the line and the remedy.
 """
 
 import json
@@ -36,9 +36,9 @@ _MULTIPLIER: Final = (
 )
 # Words before the names, or the units, of columns in a comment.
 _LABEL: Final = r"(?i)^(fancyNames|columns|headings?|units?)\s*[:=]\s*"
-# Characters of the longest heading: tables of instruments have some hundred.
+# Characters of the longest heading: tables of instruments have a few hundred.
 _LONGEST: Final = 4_000
-# Argument of a function behind its name: A(h), A(hc), f(r).
+# Argument of a function after its name: A(h), A(hc), f(r).
 _ARGUMENT: Final = r"(?<=\w) ?\((h|h_?c|r)\)"
 _SQUARE: Final = r"(²|\^2|\*\*2|2)$"
 # A number before a unit, such as 10^-6, 1e-6 or x10-6.
@@ -98,7 +98,7 @@ def refuse(line: int, detail: str) -> InputError:
 
 
 def cells_of(text: str, separator: str) -> list[str]:
-    """Return the cells of a line; a blank separates as a comma and a blank do."""
+    """Return the cells of a line; a separating blank may have a comma before it."""
     if separator == " ":
         return text.replace(", ", " ").split()
     return [cell.strip() for cell in text.split(separator)]
@@ -180,7 +180,7 @@ def _title(cell: str, line: int) -> Title:
 
 
 def _rank(title: Title, quantity: str) -> int | None:
-    """Place of a column among those of a quantity, last by its unit alone; None if none."""
+    """Rank of a column for a quantity, last if only its unit fits; None if it does not fit."""
     order, measure = _NAMES[quantity], title.unit and title.unit[0]
     # A known unit decides, whatever the name.
     if measure not in {None, MEASURES[quantity]} and (measure, quantity) != ("area", "radius"):
@@ -191,14 +191,14 @@ def _rank(title: Title, quantity: str) -> int | None:
     for name in ("".join(title.words), *words[: len(words) == 1]):
         if name in order:
             return order.index(name)
-    # A length may be a radius or a height; an area is that of a tip.
+    # A length may be a radius or a height; an area is the area function of a tip.
     return len(order) if measure and (quantity not in PROFILE or measure == "area") else None
 
 
 def places_of(
     titles: Sequence[Title], numeric: Sequence[int], kind: Sequence[str], line: int
 ) -> list[list[int]]:
-    """Return the indices of the columns of each quantity: one, or those of loading and unloading.
+    """Return the indices of the columns of each quantity: one, or loading and unloading.
 
     Parameters
     ----------

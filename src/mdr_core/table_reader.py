@@ -38,7 +38,7 @@ _DIALECTS: Final = (
     *((separator, form) for separator in "\t;" for form in (_POINT, _COMMA)),
     *((" ", _COMMA), (",", _POINT), (" ", _POINT)),
 )
-# Signs of one meaning, marks of comments, comments behind numbers, and repeated blanks.
+# Signs of one meaning, marks of comments, comments after numbers, and repeated blanks.
 _REPLACED: Final = (
     ("\r\n?", "\n"),
     ("−", "-"),
@@ -55,7 +55,7 @@ _DECIMAL: Final = str.maketrans(",dD", ".ee")
 _THOUSANDS: Final = re.compile(r'" *[-+]?\d{1,3}(,\d{3})*,\d{3}(\.\d*|,\d{3}) *"')
 # Comment that names the segment of the rows beneath it, in files of JPK.
 _SEGMENT: Final = re.compile(r"segment: *(\w+)$")
-# Bytes of the longest file, some 10^5 points: more take seconds.
+# Bytes of the longest file, about 10^5 points; longer files take seconds.
 _LARGEST: Final = 4_000_000
 # Height over radius, as written, above which columns without names may be h and A(h): A(h)/h of a
 # tip in nanometres is in the hundreds, f/r of a ball in micrometres over millimetres is 10.
@@ -221,7 +221,7 @@ def _decoded(content: bytes) -> str:
     try:
         return content.decode("utf-16" if wide else "utf-8-sig")
     except UnicodeDecodeError:
-        # As older instruments write it.
+        # Older instruments write this encoding.
         return content.decode("cp1252", errors="replace")
 
 

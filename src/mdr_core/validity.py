@@ -191,7 +191,7 @@ def notices(findings: Iterable[Finding]) -> list[Notice]:
 
 
 def model_error(contact: SolvedContact) -> Array:
-    """Return the estimated relative error of depth, force and displacements by the model [1].
+    """Return the relative error of depth, force and displacements due to the model [1].
 
     Estimate, not a bound, for each load; 1 stands for 100 % and more. It includes the half-space
     (`half_space`, `thin_body`), and with friction the neglected coupling and the transverse slip.

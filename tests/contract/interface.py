@@ -1,6 +1,6 @@
 """Facts of the interface `/v1` on which clients depend, one line each.
 
-`python -m tests.contract.interface` writes those of the committed `openapi.json`, at a release:
+`python -m tests.contract.interface` writes the facts of the committed `openapi.json` at a release:
 
     POST /v1/normal                        an operation
     POST /v1/normal 200 text/csv           a format of its response

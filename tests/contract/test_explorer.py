@@ -453,7 +453,7 @@ def test_drift_of_a_hold_is_subtracted_on_request(visit: Visit, tmp_path: Path) 
 def mindlin_loop(rig: float, part: float = 1.5) -> tuple[np.ndarray, np.ndarray]:
     """Return a loop of a ball of 10 mm under 10 N, for E* = 2 GPa, G* = 1.6 GPa and mu = 0.3.
 
-    The amplitude of the contact is a `part` of that of full slip.
+    The amplitude of the contact is a `part` of the amplitude of full slip.
     """
     depth = (7.5 / (2e9 * 0.1)) ** (2 / 3)
     whole = 0.3 * 2 / 1.6 * depth

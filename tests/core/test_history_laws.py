@@ -50,7 +50,7 @@ def near(value: Any, absolute: float = 0.0, rel: float = 1e-12) -> Any:
 
 
 def controls(case: Case, path: list[tuple[float, float]]) -> tuple[Array, Array, float]:
-    """Depths, displacements, and the depth that both are fractions of."""
+    """Depths, displacements, and the depth to which both are scaled."""
     depth = float(at_radius(*case).indentation_depth)
     d, u = np.array(path).T
     return d * depth, u * SHIFT * depth, depth

@@ -238,7 +238,7 @@ def test_units_of_a_kink_beside_its_break() -> None:
 
 
 def test_decimal_units_of_rounded_points_change_nothing() -> None:
-    """Written digits are those of another unit: mm and m, nm and µm."""
+    """Digits may be written in another unit: mm and m, nm and µm."""
     table = instrument_tables.mesh_of_a_ball()
     r, f = table.r, table.f
     other = [[float(1000 * Decimal(repr(value))) for value in each.tolist()] for each in (r, f)]
@@ -574,7 +574,7 @@ def test_waviness_of_few_points_is_no_shape() -> None:
 @pytest.mark.every(20)
 @pytest.mark.parametrize("seed", range(60))
 def test_table_of_an_instrument(seed: int) -> None:
-    """None is refused, none is wrong by 5 % without a word."""
+    """No table is rejected, and none is wrong by 5 % without a warning."""
     table = instrument_tables.drawn(seed, most=400)
     radius = np.array(table.radii())
     depth = np.array([table.depth(a) for a in radius])

@@ -1,6 +1,6 @@
 """Generate the banks of histories: ``python -m tests.oracles.history_generate``.
 
-The output is byte-reproducible. Two processes share the work; the order is that of the cases.
+The output is byte-reproducible. Two processes compute it in the order of the cases.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ class InstrumentTable:
     body : what was measured.
     length, height : units of the radii and heights of the body in those of the file.
     end : last radius at which the table shows the body, in units of the body.
-    error : standard error of the heights, by noise, rounding and the radii's rounding [length].
+    error : standard error of the heights, due to noise and the rounding of r and f [length].
     breaks, uncertainty : what the user declares.
     single_disc : False if the file shows more than the body, of another shape than a disc allows.
     """
@@ -82,14 +82,14 @@ def radii(random: Generator, count: int, end: float, spacing: str) -> Array:
 
 
 def rounded(values: Array, decimals: int) -> Array:
-    """Numbers as written with so many decimals after the leading digit of the largest."""
+    """Numbers as written with `decimals` decimals after the leading digit of the largest."""
     largest = float(np.abs(values).max())
     place = decimals - int(np.floor(np.log10(largest))) if largest else decimals
     return np.round(values, place)
 
 
 def significant(values: Array, digits: int) -> Array:
-    """Numbers as written with so many significant digits each."""
+    """Numbers as written with `digits` significant digits each."""
     return np.array([float(f"{value:.{digits - 1}e}") for value in values.tolist()])
 
 

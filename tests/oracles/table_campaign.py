@@ -88,7 +88,7 @@ def spaced(random: Generator, count: int) -> Array:
 
 
 def digits(values: Array, count: int) -> Array:
-    """Round to so many significant digits each."""
+    """Round each value to `count` significant digits."""
     return np.array([float(f"{value:.{count - 1}e}") for value in values.tolist()])
 
 

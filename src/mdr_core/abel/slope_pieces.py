@@ -2,8 +2,8 @@
 
 Depth, force and energy are sums of closed integrals. An integral with a root at r is taken piece
 by piece: by Gauss's rule in x on pieces whose distance from r is at least twice their length, and
-next to r in w, x = r +- w^2, which removes the root. Lengths of pieces are carried, not differences
-of their ends, so that an annulus may be as narrow as its width is accurate.
+next to r in w, x = r +- w^2, which removes the root. Each piece stores its length, not only its
+ends, so that a narrow annulus keeps the accuracy of its width.
 
 Source: notes, §5.
 """
@@ -164,7 +164,7 @@ class SlopePieces:
     def stress(self, low: float, high: float, width: float, r: Array) -> Array:
         """Return int_max(r,low)^high g'(x)/sqrt(x^2 - r^2) dx at radii r < high.
 
-        The slope at a sharp tip is that of a cone, whose integral is closed.
+        A sharp tip is a cone to first order, whose integral is closed.
 
         Parameters
         ----------

@@ -141,7 +141,7 @@ def _misfit(model: Model) -> tuple[float, tuple[Notice, ...]]:
 
 
 def _open(model: Model) -> tuple[Notice, ...]:
-    """Return the warning that the interval of the contact point is not that of its error.
+    """Return the warning that the interval of the contact point does not follow from its error.
 
     At its ends the least squares for a given contact point exceed the minimum by the quantile of
     the F-distribution. Raises InputError if it has no end.

@@ -43,7 +43,7 @@ class Edge(NamedTuple):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class LoadPointResults(Results):
-    """Results of one contact or of many, from the contacts whose edges the load points are."""
+    """Results of one contact or of many at their load points."""
 
     profile: Profile
     """Profile of all contacts; its parameters are numbers, or arrays over the contacts."""

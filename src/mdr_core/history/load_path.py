@@ -99,7 +99,7 @@ UNLOADED: Final = SavedState("", 0.0, 0.0, 0.0, "no_contact", ())
 class SampledPath:
     """Points and samples of a load history, in the quantities that are prescribed.
 
-    Of two rows the first is the normal load, and the second the tangential load.
+    In arrays of two rows the first is the normal load, the second the tangential load.
     """
 
     start: ContactState

@@ -146,7 +146,7 @@ def decides_regime(codes: Indices, normal: Array, deeper: Array, further: Array)
 
     Parameters
     ----------
-    codes : those of `regime_codes`.
+    codes : result of `regime_codes`.
     normal : normal coordinate after each step.
     deeper, further : growth of the normal and of the tangential coordinate.
     """

@@ -342,7 +342,7 @@ def tip_points(
 
 
 def _of_each(function: Callable[..., Array], ends: tuple[Array, ...], radius: Array) -> Array:
-    """Values at radii (m,) of a function of single annuli, those of one annulus together."""
+    """Values at radii (m,) of a function of single annuli, called once for each annulus."""
     if all(end.size == 1 for end in ends):
         return function(*(end.item() for end in ends), radius)
     annuli = np.stack([np.ravel(end) for end in np.broadcast_arrays(*ends)])

@@ -31,8 +31,8 @@ from mdr_core.validity import Finding, infinite_deviator
 # Radii, and depths per e-fold, of a grid. The radii cluster at the axis, the edges and the breaks;
 # the depths lie between these parts of the contact radius.
 _RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 2, 1e-4, 2.0
-# Points of the spline through the grid over those of the grid; part of the highest stress that its
-# peaks reach if they are climbed.
+# Points of the spline per point of the grid; part of the highest stress above which its peaks are
+# refined.
 _FINER, _ALMOST = 4, 0.8
 # Directions of the grid if there is friction: it may lift a peak out of the plane y = 0.
 _ANGLES: Final = np.linspace(0, np.pi / 2, 4)
@@ -141,9 +141,9 @@ def yield_finding(
 ) -> Finding:
     """Return `yield`: loads under which a body has yielded by Tresca's criterion.
 
-    `yield_strength` is that of the softer body [pressure]. Poisson's ratio 0.3 is assumed if none
+    `yield_strength` is for the softer body [pressure]. Poisson's ratio 0.3 is assumed if none
     are known. Along a load history the forces of every sample count as applied once; at its end
-    the traction is that of the path. Source: johnson, section 4.2; notes, §12.
+    the traction follows from the path. Source: johnson, section 4.2; notes, §12.
     """
     ratios, pressed = poissons_ratios or (ASSUMED_RATIO,), contact.normal
     profile, (columns, shape) = pressed.profile, _columns(contact)

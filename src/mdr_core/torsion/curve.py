@@ -103,7 +103,7 @@ class VirginCurves:
             self._rise[:, pressed] = weight.reshape(NODES, -1, edge.size) * self.length[pressed]
 
     def place(self, along: Array, at: Any = _ALL) -> tuple[Array, Array]:
-        """Return x and sqrt(x^2 - b^2) of places."""
+        """Return x and sqrt(x^2 - b^2) at places along the pieces."""
         base, angle = self.base[at], np.maximum(self._angle[at] - along, 0.0)
         s = np.where(base > 0, base * np.sinh(angle), self._top[at] * np.exp(-along))
         return np.hypot(base, s), s

@@ -59,9 +59,9 @@ SCALARS: Final = (
 
 # Nodes beyond `resolution`: fewer than 16 can be unstable at the stick edge.
 _EXTRA_NODES: Final = 16
-# Nodes of the second run of the error estimates, as a part of those of the first.
+# Nodes of the second run of the error estimates, over the nodes of the first.
 _COARSER: Final = 2 / 3
-# Tolerance of the second run over that of the first.
+# Tolerance of the second run over the tolerance of the first.
 _LOOSER: Final = 4.0
 # Factor of the difference in an estimate of a scalar, whose error is at most 0.8 times the
 # difference where it falls like 1/resolution^2.
@@ -251,8 +251,8 @@ def solve(
 
     df/dN = K mu p(r) S(r), S = 4 |s(r)|: the wear of a cycle is proportional to its friction work
     at each place, so that dV/dN = K W. The depth or the normal force of the contact, whichever
-    was prescribed, and the amplitude are held constant. A displacement amplitude may exceed that of
-    full slip: the whole contact wears.
+    was prescribed, and the amplitude are held constant. The whole contact wears if a displacement
+    amplitude exceeds the onset of full slip.
 
     Source: mdr-5, Problem 6; dimaki, the wear law; notes, §11.
 

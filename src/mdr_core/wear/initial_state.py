@@ -17,8 +17,8 @@ from mdr_core.typing import Array
 from mdr_core.wear.annulus_maps import AnnulusMaps, annulus_maps
 from mdr_core.wear.worn_annulus import ALMOST
 
-# Widths by which the contact may grow at c = a; it carries the force on less where c is small. The
-# contact of a paraboloid grows by half a width, that of a power 100 by less.
+# Growth limit of the contact in widths at c = a; it carries the force on less where c is small.
+# The contact of a paraboloid grows by half a width, of a power 100 by less.
 _GROWTH: Final = 4.0
 # Chebyshev terms of the tilt: the branch point of its arccosine lies a quarter of the interval
 # before it, so that 16 terms resolve it to (3/2 + sqrt(5)/2)^-16 = 2e-7.
@@ -94,7 +94,7 @@ class InitialState:
 
     @cached_property
     def step(self) -> float:
-        """gamma(a) before wear [length]: that of full slip is the depth."""
+        """gamma(a) before wear [length]; the depth in full slip."""
         return float(self.normal.indentation_depth) if self.full_slip else self.depth_unit
 
     @cached_property

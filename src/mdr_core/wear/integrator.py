@@ -15,19 +15,19 @@ from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.rates import jacobian, rates
 from mdr_core.wear.worn_surface import WornSurface
 
-# Absolute tolerance, as a part of `rtol` times the wear by the first cycles. A larger one leaves
-# errors of the pressure above that at which wear counts as ended.
+# Absolute tolerance, over `rtol` times the wear of the first cycles. A larger one leaves errors
+# above the pressure at which wear counts as ended.
 _ABSOLUTE: Final = 0.01
-# Part of the largest slip up to which the tolerance of the slip is a part of itself: where there is
-# less, a growing stick zone takes it back before it counts.
+# Slip over the largest slip, down to which the tolerance is relative to the slip itself. A growing
+# stick zone erases smaller slip before it matters.
 _LEAST_SLIP: Final = 0.01
 # Scaled cycles below which the integrator's first step underflows.
 _FIRST: Final = 1e-100
 # Relative distance at which an edge has reached a place: a slope jump, or the flat or the axis,
 # where full slip begins.
 _REACHED: Final = 1e-3
-# Most evaluations of the rates, three seconds. A constant depth with a constant force amplitude
-# takes up to 7,500 at a tolerance of 1e-9, the equator of a sphere 4,700.
+# Maximum number of rate evaluations, three seconds. A constant depth and a constant force amplitude
+# take up to 7,500 at a tolerance of 1e-9, the equator of a sphere 4,700.
 _MAX_CALLS: Final = 10_000
 # Largest tolerance times the square of the number of nodes, by which the pressure amplifies errors
 # of the wear: from about 0.6 on it may turn negative, and the steps stall.
@@ -152,7 +152,7 @@ def _scale(initial: InitialState) -> Array:
     found[:inner] = np.maximum(slip[:, 0], _LEAST_SLIP)
     # In full slip the depth that can wear off is a part of the slip.
     found *= initial.step / initial.depth_unit
-    # In a narrow annulus all but b change by a part b_0/a_0 only.
+    # In a narrow annulus only b changes as a whole, the others by the fraction b_0/a_0.
     found[inner] = 1.0
     return found
 

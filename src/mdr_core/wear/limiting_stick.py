@@ -140,8 +140,8 @@ def _first_crossing(
 ) -> tuple[Array, Array]:
     """Return the ends of the first interval of [0, widest] in which a function reaches a target.
 
-    Where it does not, they enclose its largest value. For a profile with a slope discontinuity the
-    function can rise, fall and rise again.
+    If the function does not, they enclose its largest value. For a profile with a slope
+    discontinuity the function can rise, fall and rise again.
     """
     low, high = np.zeros_like(widest), widest
     for _ in range(_ROUNDS):

@@ -1,7 +1,7 @@
 """Rates of change of the worn annulus with the number of cycles.
 
-All rates are linear in those of the edges, b' = db/dN, c' and d': each is a set of four rates,
-times (1, b', c', d'). The edges follow from what holds at all times:
+All rates are linear in the rates b' = db/dN, c' and d' of edges and depth: each is four numbers
+times (1, b', c', d'). The edges follow from identities that hold at all times:
 
     gamma(a) = D, and d in full slip,
     int_0^a (d - g) dx is constant under a constant normal force,
@@ -144,7 +144,7 @@ class _MovingAnnulus(AnnulusState):
         return found
 
     def _solve(self, right: Array) -> Array:
-        """Rates of the moving edges at which the conditions stay met, by their other terms."""
+        """Rates of the moving edges that keep the conditions met, given their other terms."""
         conditions = self.conditions[:, self.moving].transpose(2, 0, 1)
         try:
             return np.asarray(-np.linalg.solve(conditions, right))
@@ -194,7 +194,7 @@ class _MovingAnnulus(AnnulusState):
 
     @property
     def _outer_edge(self) -> Array:
-        """Rate of gamma(a) - D, with the return of its error.
+        """Rate of gamma(a) - D, plus a term that drives its error to zero.
 
         As gamma = x omega, it is a omega(a)' + a' omega(a) - D' + RETURN (gamma(a) - D).
         """

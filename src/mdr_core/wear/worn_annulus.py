@@ -17,7 +17,7 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import NODES, composite_rule
 from mdr_core.typing import Array
 
-# As near to the end of a profile as its functions are evaluated: they may be infinite there.
+# Largest radius over the end of a profile: its functions may be infinite at the end itself.
 ALMOST: Final = 1 - 1e-9
 
 

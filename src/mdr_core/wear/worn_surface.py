@@ -21,8 +21,8 @@ class WornSurface(AnnulusState):
     """Worn contact at each number of cycles: scalars (cycles,) and fields (cycles, radii)."""
 
     trail: Array
-    """Radii c that a growing stick zone has passed, and the wear w_c that the springs keep there;
-    the last of them is the stick edge. Shape (2, k, cycles)."""
+    """Radii c that a growing stick zone has passed, up to the stick edge, and the wear w_c that the
+    springs keep there. Shape (2, k, cycles)."""
     settled_at: float = field(default=inf, kw_only=True)
     """Number of cycles after which wear has stopped."""
     cycles: Array = field(kw_only=True)
@@ -95,7 +95,7 @@ class WornSurface(AnnulusState):
     def pressure(self, radius: ArrayLike) -> Array:
         """Return p(r) [pressure], (cycles, m). Errors as for `worn_depth`.
 
-        Never negative, zero outside the contact. In the limit it is that of a flat punch of
+        Never negative, zero outside the contact. The limit is the pressure of a flat punch of
         radius c, infinite at c; before, it has a narrow peak there.
 
         Source: mdr-5, Eq. (5.79).
@@ -142,7 +142,7 @@ class WornSurface(AnnulusState):
         slips = ~sticks & (radius < self.x[-1, row])
         result[slips] = e_star * self._annulus_stress(row, radius[slips])
         if sticks.any():
-            # The pressure of the unworn foundation inside c, and that of the worn one.
+            # The unworn foundation inside c, plus the worn one outside.
             within = normal.solve(contact.profile, e_star, contact_radius=c)
             worn = e_star * self._stick_stress(row, radius[sticks])
             result[sticks] = fields.pressure(within, radius[sticks]) + worn

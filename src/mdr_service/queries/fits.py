@@ -60,7 +60,7 @@ def solve_loop(query: LoopQuery) -> LoopFit:
     require_one_of(query, *loads)
     if query.material.model_fields_set & ADHESION:
         raise InputError(("material", "work_of_adhesion"), adhesion.AdhesiveContact.unusable)
-    # Bodies always have a shear modulus, which is that of the contact only if it is not fitted.
+    # Bodies always have a shear modulus; it gives G* of the contact only if that is not fitted.
     is_known = query.material.has("g_star") or "g_star" not in (query.fit or ["g_star"])
     # The load is a member of the request itself.
     with pointing({"load": (), "g_star": ("material", "g_star")}):
