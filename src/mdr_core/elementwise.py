@@ -63,7 +63,7 @@ def piecewise(
 ) -> Any:
     """Return below(place) up to `start` and beyond(place) beyond it.
 
-    Each formula sees only places on its own side.
+    Each formula is evaluated only at places on its own side.
 
     Parameters
     ----------

@@ -86,7 +86,7 @@ class Precision:
 
     @classmethod
     def of(cls, slopes: Array, names: Sequence[str], curve: str) -> Self:
-        """Return the precision, or an InputError if the curve cannot tell parameters apart.
+        """Return the precision, or an InputError if the curve cannot distinguish parameters.
 
         Parameters: the slopes, shape (k, n); the parameters; the argument at fault.
         """
@@ -109,7 +109,7 @@ class Precision:
     def error(self, relative: float, residual: Array, curve: Array) -> float:
         """Return a bound on the numerical error of the parameters, over their sizes [1].
 
-        Parameters: the relative error of the fitted values; the residuals, and the curve.
+        Parameters: the relative error of the curve, the residuals, and the curve itself.
         """
         if not self.scale.size:
             return relative

@@ -160,8 +160,8 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
 def largest_with(profile: Profile, edge: Array, loaded: Flags, added: _Field) -> Array:
     """Return the largest sum of the stress and of another field, each of a contact [1].
 
-    The other field must fall from the axis wherever the stress is known to. Within a flat it must
-    make the sum largest on the axis or at the edge of the flat.
+    The other field must fall from the axis wherever the stress is known to. Within a flat, the sum
+    must be largest on the axis or at the edge.
 
     Parameters
     ----------

@@ -14,8 +14,8 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array, Flags, Parameter
 
-# Relative error by the neglected radial displacement, over |beta| and the slope of a cone. Source:
-# hay, by F/F_Sneddon to first order; a paraboloid has three quarters.
+# Relative error due to the neglected radial displacement, over |beta| and the slope of a cone.
+# Source: hay, F/F_Sneddon to first order; a paraboloid has three quarters.
 _RADIAL: Final = 0.63
 ASSUMED_RATIO: Final = 0.3
 """Poisson's ratio of most metals, assumed where the bodies are unknown, and Dundurs' beta."""
@@ -206,7 +206,7 @@ def _edge_slope(contact: LoadedContact) -> Array:
 
 
 def _wall_error(contact: LoadedContact) -> Parameter:
-    """Estimated error by the side wall of an elastic body with a flat end, which carries no stress.
+    """Estimated error due to the stress-free side wall of an elastic body with a flat end.
 
     The flank beyond the contact edge counts as far as it is steeper than at the edge, up to the
     slope 1, and the body by its share in the compliance. [1]

@@ -116,7 +116,7 @@ class LoopFit(LeastSquaresFit):
 
     @property
     def dissipated_energy(self) -> float:
-        """Energy of a cycle, four times that dissipated on first loading [force length]."""
+        """Energy of a cycle, four times the energy dissipated on first loading [force length]."""
         return 4 * float(self.turning.dissipated_energy)
 
     @property
@@ -223,7 +223,7 @@ class _Loop(CurveModel):
         return np.append(np.maximum(halves, 0.0), self.amplitude)
 
     def branches(self, first: Array) -> Array:
-        """Return the forces of the loop for those on first loading, by Masing's rule."""
+        """Return the forces of the loop from the forces on first loading, by Masing's rule."""
         return np.asarray(self.sign * (2 * first[..., :-1] - first[..., -1:]))
 
     def first_loading(self, values: Parameters) -> TangentialContact:

@@ -240,7 +240,7 @@ class SlippingContact(validity.ResultsOverLoads):
 
     @property
     def slips_from(self: Any) -> Array:
-        """Least radius with slip [length]; infinite without slip."""
+        """Smallest radius with slip [length]; infinite without slip."""
         return where(self.slip_width > 0, self.stick_radius, np.inf)
 
 

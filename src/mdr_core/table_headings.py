@@ -209,7 +209,7 @@ def places_of(
 
     Raises
     ------
-    ColumnsError : columns that the titles do not tell apart; it asks for their names.
+    ColumnsError : columns that the titles do not distinguish; it requests their names.
     """
     if len(numeric) == 2 and kind == PROFILE and not any(titles[i].name for i in numeric):
         return [[i] for i in numeric]

@@ -32,13 +32,13 @@ from mdr_core.validation import require_type
 _AREAS: Final = {"area", "a", "section", "areas", "fläche", "kontaktfläche", "aire"}
 _POINT: Final = re.compile(r"(?ai)[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?")
 _COMMA: Final = re.compile(r"(?ai)[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?")
-# Separator of columns, and the form of a number. Blanks, or a comma and a blank, separate numbers
-# with a decimal comma before commas separate columns: `0,5 1,2` holds two numbers.
+# Separator of columns, and the form of a number, in the order of trial. Numbers with a decimal
+# comma come before columns separated by commas: `0,5 1,2` holds two numbers.
 _DIALECTS: Final = (
     *((separator, form) for separator in "\t;" for form in (_POINT, _COMMA)),
     *((" ", _COMMA), (",", _POINT), (" ", _POINT)),
 )
-# Signs of one meaning, marks of comments, comments after numbers, and repeated blanks.
+# Variants of a sign, marks of comments, comments after numbers, and repeated blanks.
 _REPLACED: Final = (
     ("\r\n?", "\n"),
     ("−", "-"),
@@ -273,7 +273,7 @@ def _lines(text: str) -> list[tuple[int, bool, str]]:
 
 
 def _numbers(cells: Sequence[str], form: re.Pattern[str]) -> list[int]:
-    """Return the indices of two or more numbers; none beside one with another decimal sign."""
+    """Return the indices of at least two numbers; none if a number has another decimal sign."""
     found = [i for i, cell in enumerate(cells) if form.fullmatch(cell)]
     if len(found) < len(cells) and any(
         _NUMBERLIKE.fullmatch(cell) for i, cell in enumerate(cells) if i not in found
@@ -292,7 +292,7 @@ def _rows(
 
     Parameters
     ----------
-    columns : indices of the numbers in each row; empty for those in the first row.
+    columns : indices of the numbers in each row; empty to take them from the first row.
     """
     rows: list[_Row] = []
     heading, segment = [], ""

@@ -118,7 +118,7 @@ class ContactResults(Results):
 
     @property
     def slips_from(self) -> Parameter:
-        """Least radius with slip in each case [length]; infinite without."""
+        """Smallest radius with slip in each case [length]; infinite without."""
         return np.inf
 
     @property
@@ -164,7 +164,7 @@ class ResultsOverLoads(ContactResults):
 
 
 def _under_a_force(contact: LoadedContact, error: Array | None) -> Array | None:
-    """Add the error by a body's thickness to an error by the size of round bodies, up to 1.
+    """Add the error due to a body's thickness to that due to the size of round bodies, up to 1.
 
     None where there is neither, and under a flat punch, whose radius is given.
     """
@@ -266,7 +266,7 @@ def smoothed(contact: LoadedContact, profile: Tabulated) -> Finding:
 
 
 def tip(contact: LoadedContact, profile: Tabulated) -> Finding:
-    """Return `tip`: tables whose points do not tell a sharp tip from a smooth one."""
+    """Return `tip`: tables whose points do not distinguish a sharp tip from a smooth one."""
     rival = profile.fit.rival
     other = "smooth" if profile.tip_pressure > 0 else "sharp, with infinite pressure on the axis"
     text = (
@@ -444,7 +444,7 @@ def infinite_deviator(
 
 
 def listed(names: Sequence[str]) -> str:
-    """Return ascending radii as text, of many the first, the last and their number."""
+    """Return ascending radii as text; many as the first, the last and their number."""
     many = len(names) > _LISTED
     return f"{names[0]} to {names[-1]} ({len(names)} radii)" if many else ", ".join(names)
 

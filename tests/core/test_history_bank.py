@@ -1,4 +1,4 @@
-"""Cycles and random paths meet the stored references, under either kind of control."""
+"""Cycles and random paths agree with the stored references, under either kind of control."""
 
 from __future__ import annotations
 

@@ -154,7 +154,7 @@ def test_scan_not_measured_from_its_axis_is_told_the_axis(
 
 
 def test_history_next_to_the_edge_of_a_flat() -> None:
-    """Contacts beyond the edge by less than the spacing of doubles, and by 1e-5 of it."""
+    """Contacts beyond the edge by less than the spacing of doubles, and by 1e-5 of the edge."""
     b, end = 0.0522589871276889, 0.160067550986061
     assert b / end * end != b
     r = np.union1d(np.linspace(0.0, end, 41), [b])

@@ -1,4 +1,4 @@
-"""Tables meet the body that they sample within their error estimate."""
+"""Tables agree with the body that they sample within their error estimate."""
 
 from __future__ import annotations
 
@@ -314,7 +314,7 @@ def test_rough_ball(seed: int) -> None:
 
 @pytest.mark.parametrize("around", [1, 32])
 def test_mesh_of_a_ball(around: int) -> None:
-    """Two radii 1 µm apart; or 449 vertices on rings, in no order."""
+    """A profile with two radii 1 µm apart, or a mesh of 449 vertices on rings, in no order."""
     table = instrument_tables.mesh_of_a_ball(around)
     body = BODIES["sphere"]
     for depth in (1e-5, 1e-4, 1e-3):
@@ -403,7 +403,7 @@ def test_equivalent_profile_never_falls(name: str) -> None:
 
 
 def test_warning_states_what_the_table_could_not_meet() -> None:
-    """One height is wrong by a hundredth of the last: the fit passes it by and says where."""
+    """One height is wrong by a hundredth of the last: the fit misses it, and a warning names it."""
     body = BODIES["sphere"]
     r, f = sampled(body, 60)
     f[40] -= 0.02 * f[-1]

@@ -186,7 +186,7 @@ def test_narrow_annulus_next_to_a_flat_wears_to_its_limit(body: Profile) -> None
 def test_first_cycle_of_a_narrow_annulus_takes_few_steps(
     body: Profile, part: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The wear in it is a part of 1e-6, which the rounding error of the slip must not reach."""
+    """The first cycle wears 1e-6 of the total, which must exceed the rounding error of the slip."""
     contact = normal.solve(body, 1.0, contact_radius=0.3 * (1 + 1.5e-5))
     contact = normal.solve(body, 1.0, indentation_depth=float(contact.indentation_depth))
     force = {"tangential_force": part * 0.4 * float(contact.normal_force)}

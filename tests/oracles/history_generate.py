@@ -73,7 +73,7 @@ class Scene:
 
 
 def _chosen_regimes(family: Family) -> Iterator[tuple[str, float]]:
-    """The first regime, and those next to a break."""
+    """The first regime, and the regimes next to a break."""
     yield family.regimes[0]
     for regime, ratio in family.regimes[1:]:
         if regime in (*CLOSE, "b/a=0.95") and family.name in ("rounded-punch", "rounded-cone0.3"):

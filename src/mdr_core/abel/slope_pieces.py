@@ -26,7 +26,7 @@ from mdr_core.typing import Array
 
 # Distance of a piece from r, over its length, from which Gauss's rule in x converges as 9.9^-2n.
 _FAR: Final = 2.0
-# Nodes there: they leave 1e-11 of the roughest piece, and 1e-16 of a smooth one.
+# Nodes on far pieces: the error is 1e-11 on the roughest piece, and 1e-16 on a smooth one.
 _FAR_NODES, _FAR_WEIGHTS = composite_rule(8)
 # Rules for a piece next to r: beyond r (1), and within r (-1), where the pole x = -r is nearer.
 _NEAR: Final = {1: composite_rule(12), -1: composite_rule(16)}

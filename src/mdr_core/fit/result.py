@@ -20,7 +20,7 @@ from mdr_core.normal import NormalContact
 from mdr_core.residuals import ROUNDING
 from mdr_core.typing import Array
 
-# Either half of an interval over that by the standard error, or the inverse, if it is lopsided.
+# Ratio of a half interval to the half from the standard error, or its inverse, if lopsided.
 _LOPSIDED: Final = 1.5
 # Growth of a standard error without a single point: at most 1.9 in curves of six points whose
 # noise is white, and 4.6 (median) where one point is taken for the pull-off.

@@ -57,7 +57,7 @@ class SavedState(NamedTuple):
 
     @classmethod
     def parsed(cls, given: Mapping[str, Any], contact: str) -> Self:
-        """Return the state of a `contact` from its members; raise InputError if it is of none."""
+        """Return the state of a `contact` from its members; raise InputError if they do not fit."""
         members: object = given
         if not isinstance(members, Mapping) or set(members) != set(cls._fields):
             detail = f"must have the members of a final_state: {', '.join(cls._fields)}"
@@ -120,7 +120,7 @@ class SampledPath:
         if count == 1:
             return self.points
         share = np.arange(1, count + 1)
-        # Proportional forces stay proportional to rounding error, even where they approach zero.
+        # Within rounding error, proportional forces stay proportional, even close to zero.
         samples = start * ((count - share) / count) + stop * (share / count)
         samples = np.where(start == stop, stop, samples).reshape(2, -1)
         return np.hstack([self.points[:, :1], samples])

@@ -247,7 +247,7 @@ class LoadHistory(validity.ResultsOverLoads):
 
     @property
     def slips_from(self) -> Array:
-        """Least radius with slip [length] in full slip; infinite otherwise."""
+        """Smallest radius with slip [length] in full slip; infinite otherwise."""
         return np.where(self.regime == "full_slip", 0.0, np.inf)
 
 

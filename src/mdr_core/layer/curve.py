@@ -108,7 +108,7 @@ class DepthCurve:
 
     @property
     def error(self) -> float:
-        """Estimated error by the interpolation, relative to the largest force [1]."""
+        """Estimated error of the interpolation, relative to the largest force [1]."""
         return self._parts[2] + 2 * float(np.abs(self._ratios[-2:]).max())
 
     @cached_property

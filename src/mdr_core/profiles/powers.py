@@ -86,7 +86,7 @@ class Cone(PowerLaw):
 
     Parameters
     ----------
-    slope : t = tan(theta) of the flank against the plane [1].
+    slope : slope t = tan(theta) of the flank against the plane [1].
     """
 
     slope: Parameter

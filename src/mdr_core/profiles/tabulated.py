@@ -292,7 +292,7 @@ class Tabulated(Profile):
         x = edges[:-1, None] + np.diff(edges)[:, None] * share[1:]
         x, slope = x.ravel(), self._spline.slope(x.ravel())
         beyond = np.where(x > edges[1], (x * self._spline.slope(x, 1) - slope) / x**3, 0.0)
-        # Where h' > 0 on the axis, the pressure rises by no more than this rounding error.
+        # Where h' > 0 on the axis, the pressure may rise by `_ROUNDING`: notes, §7.
         rise = -np.log(_ROUNDING) / 2 * max(tip, 0.0) * x
         rise += np.maximum.accumulate(np.maximum(beyond, 0.0)) * np.square(x)
         ends = (slope <= 0) | (rise > slope / x)
@@ -355,7 +355,7 @@ def _of_each(function: Callable[..., Array], ends: tuple[Array, ...], radius: Ar
 
 
 def _checked(r: Array, f: Array) -> tuple[Array, Array]:
-    """Return the points; InputError unless they are some, finite and not all alike."""
+    """Return the points; InputError unless they are finite, differ, and have three radii."""
     for name, values in (("r", r), ("f", f)):
         require_list(("profile", name), values)
         require_finite(("profile", name), values)

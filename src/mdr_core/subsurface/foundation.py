@@ -66,7 +66,7 @@ class Foundation:
         self.slips_from = load.radius[:-1][load.slope != 0].min(initial=inf)
         self.sheared = bool(self.slips_from < inf)
         self.loaded = bool(load.coordinate[-1] > 0)
-        # The kernel 1/rho^3 is a double.
+        # The kernel 1/rho^3 must be representable.
         require_representable(("profile",), np.asarray(self.loaded), load.radius[-1] ** 3)
         radii = map(float, profile.infinite_pressure_radii)
         self.infinite_radii = [b for b in radii if self.loaded and b <= load.radius[-1]]

@@ -215,7 +215,7 @@ def _under(profile: Profile, *case: float) -> tangential.TangentialContact:
 def _onset(
     profile: Profile, case: list[float], measure: str, limit: float, nu: float, body: int
 ) -> float:
-    """Normal force at which the largest stress is `limit`, in the ratio of the forces of a case.
+    """Normal force at which the largest stress is `limit`, at the ratio of the forces of a case.
 
     Secant steps in the logarithms, which are nearly in proportion, and bisections where they leave
     the bracket. The error after two secant steps is of the order of their product.

@@ -66,7 +66,7 @@ _LOOSER: Final = 4.0
 # Factor of the difference in an estimate of a scalar, whose error is at most 0.8 times the
 # difference where it falls like 1/resolution^2.
 _SAFETY: Final = 2.0
-# Factor for a field: the thin peak of the pressure next to a moving stick edge falls more slowly.
+# Factor for a field: its error falls more slowly in the thin pressure peak at a moving stick edge.
 _OF_FIELDS: Final = 4.0
 # Factor beside a break, where both runs may err alike.
 _AT_BREAKS: Final = 10.0
@@ -116,7 +116,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
     @property
     def _whole_force(self) -> Array:
-        """Normal force, in full slip that before wear [force]."""
+        """Normal force; in full slip, its value before wear [force]."""
         if self.initial.full_slip:
             return np.full(self.cycles.shape, float(self.normal.normal_force))
         return self.normal_force

@@ -84,7 +84,7 @@ class _MovingAnnulus(AnnulusState):
 
         Material outside a shrinking stick zone has worn exponentially with its distance from the
         edge, so that v differs by orders of magnitude between neighbours. The slope of ln(v/z)
-        keeps v positive there; that of v overshoots where the layer is thin.
+        keeps v positive there; the slope of v overshoots where the layer is thin.
         """
         if not self.initial.stick_shrinks:
             return np.asarray(slope @ self.worn)

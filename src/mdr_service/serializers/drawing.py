@@ -118,7 +118,7 @@ def _draw_curves(axes: _Axes, panel: Panel) -> None:
         shown = name if finite.any() else f"{name} (∞)".strip()
         color = "0.4" if is_reference else f"C{index}"
         axes.plot(x, np.where(finite, y, np.nan), style, color=color, label=shown)
-    # Zero is in sight.
+    # Extend the axes to include zero.
     axes.axhline(0.0, linewidth=0.0)
     if panel.x not in {"radius", "x", "z"}:
         axes.axvline(0.0, linewidth=0.0)
