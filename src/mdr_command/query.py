@@ -206,7 +206,7 @@ def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
     else:
         r, f = _tip(area, [vars(arguments)[name] for name in _HEIGHTS], unit or "m")
     if (count := r.size) > (most := SETTINGS.max_table_points):
-        # An even choice of as many points as a request may have.
+        # Choose evenly among the points, as many as a request may have.
         _say(arguments, file, f"{count} points, of which {most} are used")
         chosen = np.argsort(r)[np.linspace(0, count - 1, most).round().astype(int)]
         r, f = r[chosen], f[chosen]

@@ -34,7 +34,7 @@ _SHARP: Final = 0.25
 _STEP: Final = 0.04
 # Largest depth before contact, over the range of depths.
 _APPROACH: Final = 0.05
-# Largest difference from the force before contact, over the range of forces, that is no hold.
+# Largest difference from the force before contact, over the range of forces, that is not a hold.
 _LOADED: Final = 0.05
 # Largest force of a hold that shows the drift, above the least force, over the range.
 _LOW: Final = 0.5

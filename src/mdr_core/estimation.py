@@ -141,7 +141,7 @@ def linear(
     """Return the least sums of squares of `measured` less factor * shape + offset.
 
     Parameters: shapes, shape (..., k), and measured values, shape (k,); the factor if it is known;
-    False for an offset of 0. The factors and offsets follow the sums, shape (...).
+    False for an offset of 0. Also return the factors and offsets, each of shape (...).
     """
     mean, middle = shapes.mean(axis=-1) * with_offset, float(measured.mean()) * with_offset
     x, y = shapes - mean[..., None], measured - middle
@@ -174,7 +174,7 @@ class CurveModel(ABC):
 
     @cached_property
     def fitted(self) -> tuple[Array, Array]:
-        """Forces and slopes of the best parameters."""
+        """Forces and slopes at the best parameters."""
         return self.at(self.best)
 
     @property

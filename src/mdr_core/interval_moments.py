@@ -255,7 +255,7 @@ class IntervalMoments:
         if self.over_forces:
             twice = 2 * profile.contact_radius(place)
             rise, measure = rise * twice, measure / np.square(twice)
-        # Rise and measure scale with the width, which is less accurate than the span.
+        # Rise and measure are proportional to the width; the more accurate span replaces it.
         total = in_order(weights, rise)
         # The slope of g may underflow on a flat.
         total = np.where(total > 0, total, inf)

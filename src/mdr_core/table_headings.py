@@ -169,7 +169,7 @@ def _title(cell: str, line: int) -> Title:
                 cell.replace(bracket, "").strip(), None, f"the unit {inside.strip()}", line
             )
     parts = re.split(r"(?<=[^\W\d])[ _]|[/,]", cell)
-    # The unit is what follows the name, or a word within it: Defl_nN_Ex.
+    # The unit follows the name, or is a word within it: Defl_nN_Ex.
     ends = [(i, len(parts)) for i in range(1, len(parts))]
     ends += [(i, i + 1) for i in range(1, len(parts)) if len(parts[i]) > 1]
     for i, end in ends:
@@ -261,7 +261,7 @@ def segments_of(columns: Sequence[list[str]]) -> list[str] | None:
     """
     for cells in columns:
         known = {cell: segment_of(cell) for cell in {*cells} - {""}}
-        # A column of one word is no column of segments.
+        # A column with a single word is not a column of segments.
         if None not in (kinds := set(known.values())) and len(kinds) > 1 and cells[0]:
             for row in range(1, len(cells)):
                 cells[row] = cells[row] or cells[row - 1]

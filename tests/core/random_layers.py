@@ -85,7 +85,7 @@ def _error(found: Any, name: str, value: Any, truth: Any) -> Error:
 
 
 def worst(seed: int, kind: str) -> tuple[Error, layer_reference.LayerContact]:
-    """Largest error of a random scene over its limit, the lesser of the bound and the stated."""
+    """Largest error of a random case over its limit, the smaller of bound and stated error."""
     draw = random.Random(seed)
     found = scene(draw, kind)
     return max(errors(found, draw), key=lambda each: each.error / min(each.stated, BOUND)), found

@@ -126,7 +126,7 @@ def test_repeated_loop_closes_and_dissipates(case: Case, loop: list[tuple[float,
 
 
 def work(case: Case, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
-    """int F_x du up to each point, by Gauss-Lobatto on panels that cluster at kinks of F_x.
+    """int F_x du up to each point, by Gauss-Lobatto on panels that cluster at slope jumps of F_x.
 
     Additional points on a straight load step change nothing, so the rule's nodes are path points.
     """

@@ -132,7 +132,7 @@ def test_rounded_radii_on_a_long_flat_weight_the_heights() -> None:
 
 @pytest.mark.parametrize("seed", [900012, 900035])
 def test_no_pressure_exceeds_the_maximum(seed: int) -> None:
-    """Rounded heights left a slope for which g'/x rises on the axis: 3e-6 and 7e-6 were missed."""
+    """The rounded heights give a slope for which g'/x rises on the axis, by 3e-6 and 7e-6."""
     points = instrument_tables.drawn(seed, most=300)
     table = Tabulated(points.r, points.f)
     contact = solve(table, 1.0, contact_radius=0.02 * table.domain)
@@ -209,7 +209,7 @@ def test_depth_just_beyond_a_break_of_few_points() -> None:
 
 
 def test_nodes_stay_in_their_piece() -> None:
-    """Rounding errors led beyond a first piece that is far thinner than the others."""
+    """Rounding errors do not lead beyond a first piece far thinner than the others."""
     knots = np.array([0.0, 5.63e-15, 1.126e-9, 2.252e-9, 0.292, 1.0])
     seen: list[np.ndarray] = []
 

@@ -226,7 +226,7 @@ def test_units_change_nothing(name: str, unit: float) -> None:
 
 
 def test_units_of_a_kink_beside_its_break() -> None:
-    """The break is declared at a point, and the kink lies half a step below it."""
+    """The break is declared at a point; the slope discontinuity lies half a step below it."""
     b, step = 2.4, np.arange(9.0)
     f = np.maximum(step - b, 0.0) ** 2 / 1e4
     loads = [

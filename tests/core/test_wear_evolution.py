@@ -86,7 +86,7 @@ def worn(
 
 
 def ring_integral(result: evolution.WearEvolution, cycle: int) -> float:
-    """2 pi int h r dr by independent quadrature, split at the kinks of h."""
+    """2 pi int h r dr by independent quadrature, split at slope jumps of h."""
     ends = [
         float(result.stick_radius[0]),
         float(result.stick_radius[cycle]),

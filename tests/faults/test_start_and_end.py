@@ -1,4 +1,4 @@
-"""The service refuses wrong settings at the start, and sends its responses before it ends."""
+"""The service rejects invalid settings at the start, and sends its responses before it ends."""
 
 import http.client
 import json

@@ -1,4 +1,4 @@
-"""Every fit of a random curve returns finite parameters with standard errors, or is refused.
+"""Every fit of a random curve returns finite parameters with standard errors, or is rejected.
 
 Run with `python -m tests.fuzz.fits COUNT SEED`.
 """

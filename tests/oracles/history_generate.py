@@ -291,7 +291,7 @@ def tasks() -> Iterator[Task]:
 
 
 def _new_kind(everything: list[Scene], number: int) -> bool:
-    """The first scene of each kind; all but steep ones for powers."""
+    """The first case of each kind, and for powers all but the steep ones."""
     scene = everything[number]
     if scene.regime in CLOSE:
         return False

@@ -193,7 +193,7 @@ def _places(
 def _surroundings(
     random: Generator, body: Body, r: Array, f: Array, habits: list[str]
 ) -> tuple[Array, Array, bool]:
-    """Add what a file shows beyond the body: a wall, or a ledge, which is no single disc."""
+    """Add what a file shows beyond the body: a wall, or a ledge, which is not a single disc."""
     draw = random.random()
     if draw > 0.12:
         return r, f, True
@@ -247,7 +247,7 @@ def _order(random: Generator, count: int, habits: list[str]) -> Array:
 
 
 def noisy(name: str, count: int, noise: float, seed: int) -> InstrumentTable:
-    """Return a table with white noise relative to the rise, whose uncertainty is stated."""
+    """Return a table with white noise relative to the rise, and with its uncertainty."""
     random, body = np.random.default_rng(seed), BODIES[name]
     r = np.linspace(0.0, body.end, count)
     rise = float(body.f(np.array(body.end)))

@@ -22,7 +22,7 @@ from mdr_core.typing import Array
 
 # Multiple of the pull-off depth beyond which no point is in contact.
 _AFTER: Final = 1.5
-# Standard errors of the contact point, within which points are at the depth of the least force.
+# Standard errors of the contact point by which the depth of the least force may be in error.
 _NEAR: Final = 2.0
 # Fewest points after a pull-off: one alone would decide on offset and adhesion.
 _DETACHED: Final = 3
@@ -137,8 +137,8 @@ def _states(model: Model) -> adhesion.Curve:
 def _least_stable(model: Model) -> float:
     """Return the depth of the least force, less the error of the contact point.
 
-    To leave out points up to the least of noisy forces, which is low by chance, would bias the fit.
-    About the depth of the least force the force hardly changes.
+    The least of noisy forces is low by chance: leaving out the points up to it would bias the fit.
+    Near the depth of the least force the force hardly changes.
     """
     states = _states(model)
     depth = float(states.load("indentation_depth", states.at_pull_off))

@@ -187,7 +187,7 @@ class Range(NamedTuple):
 
 
 def allowed(profile: Profile, layer: Layer) -> Range:
-    """Contact radii up to the end of the profile and to the largest part of the thickness."""
+    """Contact radii up to the end of the profile and to `LARGEST` times the thickness."""
     reach = LARGEST * layer.thickness
     if profile.domain <= reach:
         return Range(float(profile.domain), profile.end)

@@ -36,8 +36,8 @@ class Tabulated(Profile):
     """The smoothest admissible profile through the points of a table, never extrapolated.
 
     The equivalent profile has a slope g' >= 0 that is a spline, with the closed images of jumps of
-    slope and curvature at declared breaks. Heights with many digits are met. From noise, rounding
-    or steps of an instrument the profile deviates by no more than their scatter, which is estimated
+    slope and curvature at declared breaks. Heights with many digits are met. From heights with
+    noise, rounding or steps the profile deviates by no more than their scatter, which is estimated
     from the points unless it is given.
 
     Parameters

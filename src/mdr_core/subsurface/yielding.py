@@ -81,7 +81,7 @@ def largest(
 
     Raises
     ------
-    InputError : another measure or body, or a Poisson's ratio out of range.
+    InputError : an unknown measure or body, or a Poisson's ratio out of range.
     AccuracyError : the contact extends beyond a flat by less than 5e-13 of its radius.
     """
     _require_measure(measure)
@@ -117,7 +117,7 @@ def yield_onset_force(
 
     Raises
     ------
-    InputError : another measure, no load, or a yield strength that is not positive.
+    InputError : an unknown measure, no load, or a yield strength that is not positive.
     AccuracyError : see `largest`.
     """
     require_single_positive(("yield_strength",), yield_strength)

@@ -161,7 +161,7 @@ class VirginCurves:
         return gains, weights * y * y * s
 
     def _gain(self, along: Array, at: tuple[Indices, Indices]) -> tuple[Array, Array]:
-        """Increase of P from the top of a piece to a place, and its derivative by the distance."""
+        """Increase of P from the top of a piece to a place, and its derivative in the distance."""
         share, series = along / self.length[at], self._resolved[2][:, :, *at]
         rate, change = chebyshev.chebval(2 * share - 1, series, tensor=False)
         return along * rate, rate + share * change

@@ -189,7 +189,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
         """Return radii from 0 to a quarter beyond the largest contact [length], (points,).
 
         They cluster at the axis, the breaks, the first and the last contact radius, and a stick
-        radius at rest; one that moves has an error. Errors as for `limit.LimitingWear.grid`.
+        radius at rest; a moving stick radius has an error. Errors as for `limit.LimitingWear.grid`.
         """
         edges = self.contact_radius[[0, -1]]
         if not self.initial.stick_moves:

@@ -145,7 +145,7 @@ def _require_all_cycles(
 
 
 def _scale(initial: InitialState) -> Array:
-    """Return the sizes of the changes of the vector by wear."""
+    """Return the sizes of the changes of the vector due to wear."""
     inner = initial.maps.squares.size - 1
     slip = AnnulusState(initial, initial.vector[:, None]).slip[:-1] / initial.units[:inner]
     found = np.full(initial.units.size, initial.length_unit / float(initial.normal.contact_radius))

@@ -32,16 +32,16 @@ _RETURN: Final = 10.0
 
 
 def rates(initial: InitialState, vector: Array) -> Array:
-    """Return the derivative of vectors by the scaled number of cycles, (n,) or (n, k)."""
+    """Return the derivative of vectors in the scaled number of cycles, (n,) or (n, k)."""
     found = _MovingAnnulus(initial, vector.reshape(len(vector), -1)).rates
     return found.reshape(vector.shape)
 
 
 def jacobian(initial: InitialState, vector: Array) -> Array:
-    """Return the derivative of the rates by the vector, for Newton's method, (n, n).
+    """Return the derivative of the rates in the vector, for Newton's method, (n, n).
 
-    By the worn depth exactly, by the edges from differences; the tilt's effect on the edges'
-    rates is neglected.
+    It is exact in the worn depth, and a difference quotient in the edges; the effect of the tilt on
+    the rates of the edges is neglected.
     """
     state = _MovingAnnulus(initial, vector[:, None])
     inner = initial.maps.squares.size - 1

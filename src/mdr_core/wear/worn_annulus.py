@@ -29,7 +29,7 @@ def angle(stick: Array, width: Array) -> Array:
 def worn_volume(profile: Profile, stick: Array, width: Array, step: Array) -> Array:
     """Return 4 int_c^r (d - g(x)) sqrt(r^2 - x^2) dx = 2 pi int_c^r h r dr [length^3].
 
-    At the outer edge the derivative by the width vanishes with the worn depth h, so that the
+    At the outer edge the derivative in the width vanishes with the worn depth h, so that the
     rounding error of the width has no effect. Source: notes, §9.
 
     Parameters

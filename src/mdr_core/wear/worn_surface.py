@@ -78,7 +78,7 @@ class WornSurface(AnnulusState):
         """Return h(r) = f - f_0 [length], (cycles, m), which is never negative and never falls.
 
         Where numerical errors would reduce it from one number of cycles to the next, the earlier
-        depth is returned for both, which is no further from the truth.
+        depth is returned for both, which is not further from the truth.
 
         Raises
         ------
