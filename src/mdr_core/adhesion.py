@@ -151,7 +151,7 @@ class Curve:
         return np.append(first, ends[~stable[at]]), np.append(ends[stable[at]], nodes[-1])
 
     def outermost(self, name: str, load: Array) -> tuple[Array, int]:
-        """Return the outermost stable coordinate of each load (n,), and the most states of one."""
+        """Return the outermost stable coordinate of each load (n,), and the maximum of states."""
         low, high = self.stable[name]
         least = self.load(name, low)
         holds = load[:, None] >= least - ROUNDING * np.abs(least)

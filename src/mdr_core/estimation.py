@@ -19,8 +19,8 @@ from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
 from mdr_core.typing import Array
 
-# Singular value of the slopes, of unit columns, over the largest, at which two parameters have the
-# same effect, and the least part of a parameter in that effect. Rounding leaves 1e-16; fits that
+# Singular value of the normalised slopes, over the largest, below which parameters have the same
+# effect, and the smallest component of a parameter in it. Rounding leaves 1e-16; fits that
 # determine their parameters have 1e-6 or more.
 _SAME, _PART = 1e-8, 0.1
 # Relative decrease of the sum of squares at which Gauss-Newton steps take over.

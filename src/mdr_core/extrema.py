@@ -43,7 +43,7 @@ LEAST_GAP: Final = 1e-13
 # may have a peak in every one, is sampled as finely.
 _NINE: Final = np.linspace(0.0, 1.0, 9)
 # a/R beyond which the flank of a spherical-tip cone adds the same pressure everywhere on the tip,
-# up to a relative (R/a)^2.
+# with a relative error of (R/a)^2.
 _FAR: Final = 1e8
 # All contacts of rounded punches are similar. One spline serves them up to this absolute value of
 # log(s/b); its number of places and its degree leave an error of 3e-15.
@@ -95,7 +95,7 @@ def largest_stress(
 def _of_similar(profile: Profile, edge: Array) -> Array:
     """Largest pressure over E* of kinds whose contacts are similar [1], NaN where unknown."""
     if isinstance(profile, Power):
-        # The stress over the slope g' is a constant of the exponent.
+        # The stress over the slope g' depends on the exponent alone.
         exponent = where(profile.exponent > 1, number(1.0) * profile.exponent, 2.0)
         return np.vectorize(_over_slope, otypes=[float])(exponent)[()] * profile.dg(edge)
     if isinstance(profile, RoundedPunch):

@@ -30,9 +30,9 @@ _WALL: Final = 3.0
 _HELD: Final = {"contacts": 0.6, "stem": 0.85, "free": 1.1, "block": 0.0}
 # Coefficient of a socket in a block.
 _SOCKET: Final = 0.6
-# Error of the force on a bonded incompressible layer over the slope at the edge and (a/h)^2, its
-# levelling off with (a/h)^2, and the power of nu/(1 - nu) by which it falls with compressibility:
-# -0.003, -0.083 and -0.88 at a/h 0.1, 0.5 and 2 for nu = 1/2, and -0.12 at 2 for nu = 0.3.
+# Error of the force on a bonded layer, over the slope at the edge: s y/(1 + l y) (nu/(1 - nu))^c,
+# y = (a/h)^2. It fits -0.003, -0.083 and -0.88 at a/h 0.1, 0.5 and 2 for nu = 1/2, and -0.12 at
+# 2 for nu = 0.3. The constants are s, l and c.
 # Source: manual, Contact with a layer, finite elements.
 _SQUEEZED, _LEVELS, _COMPRESSIBLE = 0.32, 0.114, 2.5
 

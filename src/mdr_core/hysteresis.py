@@ -1,6 +1,6 @@
 """Shear modulus and friction coefficient from a hysteresis loop under a constant normal load.
 
-After a reversal of the displacement the force follows the law of first loading, enlarged twice
+After a reversal of the displacement the force follows the law of first loading, scaled by two
 (Masing), also with a rig of compliance C in series, U = u + C F.
 
 Source: mindlin-deresiewicz; notes, §15.
@@ -144,15 +144,15 @@ def solve(
     Parameters
     ----------
     contact : contact under the constant normal load.
-    tangential_displacement : in the order of the measurement, exact beside the forces [length],
+    tangential_displacement : in the order of the measurement, with negligible errors [length],
         shape (k,).
     tangential_force : measured forces [force], shape (k,).
     fit : parameters to fit, of `PARAMETERS`; by default the first four, less those that are given.
         Unless fitted, the force offset is 0, and the displacement offset the middle between the
         largest and the least displacement, which the turning points may exceed between samples.
     g_star, friction_coefficient : G* [pressure] and mu [1], if they are not fitted.
-    rig_compliance : C of the rig in series, 0 of displacements measured at the contact; fitted if
-        it is not given, which needs a loop with full slip, or almost [length/force].
+    rig_compliance : C of the rig in series, 0 for displacements measured at the contact; fitted if
+        it is not given, which needs a loop in or close to full slip [length/force].
 
     Returns
     -------

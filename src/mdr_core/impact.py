@@ -220,7 +220,7 @@ def solve(
     )
     regime = np.where(np.reshape(slides, speeds.shape), "full_slip", "partial_slip")
     known = e_star if isinstance(e_star, Material) else Material(start.e_star)
-    # The depth of bodies that fly counts against their centres.
+    # The depth of flying bodies is measured against their centres.
     material = replace(known, held=("free", "free"))
     return Impact(
         normal.solve(profile, material, indentation_depth=profile.depth(last)),

@@ -102,5 +102,5 @@ def piecewise_rule(points: int, ends: Array) -> tuple[Array, Array]:
 
 
 def reach_of_power(exponent: float) -> float:
-    """Return log(x0/x) at which (x/x0)^exponent is negligible, or at which doubles end."""
+    """Return log(x0/x) at which (x/x0)^exponent is negligible, up to the range of doubles."""
     return min(-log(EPS) / exponent, LOG_RANGE) if exponent > 0 else LOG_RANGE

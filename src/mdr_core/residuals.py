@@ -41,14 +41,14 @@ _DEPTH, _BRANCH, _SCATTER = 8, 4, 3
 _CONTAINED: Final = 1e-6
 # Maximum number of polynomials of the time.
 _TIME: Final = 4
-# Warnings where the causes of two need not be told apart.
+# More general warning in place of one whose cause a caller does not distinguish.
 _GENERAL: Final = {"two_branches": "misfit", "drift": "correlated_noise"}
 # Fewest points of a branch.
 _FEWEST: Final = 3
 
 
 def directions(x: Array) -> Array:
-    """Return 1 where a displacement rises and -1 where it falls, turning points with the former.
+    """Return 1 where a displacement rises and -1 where it falls; turning points end a branch.
 
     Reversals below 5 % of the range are noise.
     """
@@ -116,8 +116,8 @@ def judged(
 ) -> tuple[float, tuple[Notice, ...]]:
     """Return the joint probability of all tests, and the warning that residuals are not noise.
 
-    Parameters: the result of `misfit`; causes by the warning, of which the more general one holds
-    where there is no other; a remedy of a misfit.
+    Parameters: the result of `misfit`; causes by warning code, of which `_GENERAL` replaces missing
+    ones; a remedy of a misfit.
     """
     code = min(found, key=lambda each: found[each], default="misfit")
     joint = min(1.0, len(found) * found[code]) if found else 1.0
@@ -134,7 +134,7 @@ def judged(
 
 
 def _prepared(q: Array, residual: Array, force: Array) -> tuple[Array, Array, float]:
-    """Return residuals of a robust fit, those cut, and the step of rounding.
+    """Return the residuals of a robust fit, the cut residuals, and the step of rounding.
 
     The robust fit is linear about the least squares: another minimum would change the sizes.
     """

@@ -16,10 +16,10 @@ from mdr_core.errors import InputError
 _WORDS: Final = json.loads(files("mdr_core").joinpath("table_words.json").read_text("utf-8"))
 # Prefix -> power of ten; unit -> quantity, size in SI units, and whether it takes a prefix.
 _PREFIXES, _UNITS = _WORDS["prefixes"], _WORDS["units"]
-# Names of each quantity, and words beside a name that leave its meaning.
+# Names of each quantity, and words beside a name that do not change its meaning.
 _NAMES, _NEUTRAL = _WORDS["names"], frozenset(_WORDS["neutral"])
 # Parts of names of depths that fall towards the sample, and of positions of a cantilever, which are
-# no depths before its deflection is subtracted.
+# not depths until its deflection is subtracted.
 _FALLING, _DEFLECTED = _WORDS["falling"], _WORDS["deflected"]
 # Words of each kind of segment; of several the first kind is meant, as in "hold at peak load".
 _SEGMENTS: Final = {kind: frozenset(words) for kind, words in _WORDS["segments"].items()}
@@ -158,7 +158,7 @@ def titles_of(
 def _title(cell: str, line: int) -> Title:
     """Return a title: `r [mm]`, `r (10^-6 m)`, `r/mm`, `r, mm`, `load_micro_N` or `A(h) [mm²]`."""
     cell = re.sub(_ARGUMENT, "", cell)
-    # Brackets hold the unit, or words that leave the meaning: Height (measured) [nm].
+    # Brackets hold the unit, or words that do not change the meaning: Height (measured) [nm].
     brackets = re.findall(r"([\[({]([^\])}]*)[\])}]?)", cell)
     for bracket, inside in brackets:
         if unit := unit_of(inside):
@@ -231,7 +231,7 @@ def places_of(
             detail = f"{both} may each be the {quantity}: name one of them {quantity}"
             raise ColumnsError(line, detail, names)
     if len(numeric) == 2 and [] in places:
-        # The one that is known decides the other.
+        # If one of two columns is known, the other one is the missing quantity.
         left = [i for i in numeric if [i] not in places and not titles[i].unit]
         places[places.index([])] = left[:1]
     if [] in places:

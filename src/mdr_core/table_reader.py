@@ -51,7 +51,7 @@ _REPLACED: Final = (
 # Any number, with whatever decimal sign.
 _NUMBERLIKE: Final = re.compile(r"(?ai)[-+]?[\d.,]*\d[.,]?([ed][-+]?\d+)?")
 _DECIMAL: Final = str.maketrans(",dD", ".ee")
-# Quoted number with commas before its thousands, beside which 3,000 in quotes is not 3.
+# Quoted number with commas between thousands: in its column "3,000" is 3000, not 3.
 _THOUSANDS: Final = re.compile(r'" *[-+]?\d{1,3}(,\d{3})*,\d{3}(\.\d*|,\d{3}) *"')
 # Comment that names the segment of the rows beneath it, in files of JPK.
 _SEGMENT: Final = re.compile(r"segment: *(\w+)$")
@@ -384,7 +384,7 @@ def _require_profile(table: ParsedFile) -> None:
 
 
 def _is_area(title: Title) -> bool:
-    """Return whether a column is an area, by its name or its unit; r² in mm² is none."""
+    """Return whether a column is an area, by its name or its unit; r² in mm² is not."""
     measured = title.unit is not None and title.unit[0] == "area"
     is_radius = title.name.lower().startswith(("r", "x"))
     return not _AREAS.isdisjoint(title.words) or (measured and not is_radius)

@@ -1,4 +1,4 @@
-"""Values up to which effects that the model leaves out change a result by no more than a tolerance.
+"""Limits within which neglected effects change a result by no more than a tolerance.
 
 Each follows from the contact radius a, g'(a) and F_N(a) to first order in the tolerance t:
 

@@ -52,10 +52,10 @@ _LIMITS: Final = {
     # |beta|, by which normal and tangential contact are coupled.
     "elastic_similarity": 0.05,
 }
-# Room for rounding: a cone of slope 0.1 on incompressible bodies has an error of one per cent.
+# Margin for rounding: a cone of slope 0.1 on incompressible bodies has an error of one per cent.
 _ROOM: Final = 1 + 1e-9
-# Relative change of forces at a given displacement by transverse slip, and of displacements under
-# forces up to 0.998 of full slip, over (nu/(4 - 2 nu))^2. Source: notes, §8.
+# Relative change, due to transverse slip, of forces at a given displacement and of displacements
+# under forces up to 0.998 of full slip, over (nu/(4 - 2 nu))^2. Source: notes, §8.
 _TRANSVERSE: Final = 0.2
 # Maximum number of radii in a warning, so that it stays one sentence.
 _LISTED: Final = 5
@@ -196,7 +196,7 @@ def model_error(contact: SolvedContact) -> Array:
     Estimate, not a bound, for each load; 1 stands for 100 % and more. It includes the half-space
     (`half_space`, `thin_body`), and with friction the neglected coupling and the transverse slip.
     A flat punch that sticks to a half-space has artanh(beta)/beta - 1, about beta^2/3, more force;
-    slip across the load, of the relative size nu/(4 - 2 nu), acts to second order. Local stresses
+    transverse slip, of relative size nu/(4 - 2 nu), acts to second order. Local stresses
     may differ by beta, and displacements under a force next to full slip by more.
 
     Source: hay; spence; notes, §8.
@@ -280,10 +280,10 @@ def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Fin
     """Return `half_space`, `thin_body`, `large_strain` and `plastic`.
 
     `half_space`: the estimated error of the half-space approximation exceeds one per cent. It is
-    of first order in a/R by the finite size of round bodies, and in the slope by the neglected
-    radial displacement, and of second order by the geometry; the side wall of an elastic punch and
-    the radial displacement of a layer add to it. `thin_body`: the contact radius exceeds a tenth of
-    the given thickness of the body.
+    of first order in a/R due to the finite size of round bodies, and in the slope due to the
+    neglected radial displacement, and of second order due to the geometry; the side wall of an
+    elastic punch and the radial displacement of a layer add to it. `thin_body`: the contact radius
+    exceeds a tenth of the given thickness of the body.
     `large_strain`: the pressure of round bodies exceeds a tenth of E*. `plastic`: the deviatoric
     stress is infinite somewhere, which no material can bear.
 

@@ -180,7 +180,7 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
     ),
     (lambda: Series((PowerTerm(0.0, 2.0),)), ("profile", "terms", 0, "coefficient"), "not zero"),
     (lambda: Series((PowerTerm(-1.0, 1.0), PowerTerm(1.0, 2.0))), ("profile", "terms"), "f falls"),
-    # It falls at radii below exp(-1e6) only, which no double holds.
+    # It falls only at radii below exp(-1e6), which are not representable.
     (
         lambda: Series((PowerTerm(-0.03, 1.0), PowerTerm(0.1, 1.000001))),
         ("profile", "terms"),

@@ -379,7 +379,7 @@ def test_yield_under_a_rounded_ball() -> None:
 @pytest.mark.parametrize("noise", [1e-3, 1e-2])
 @pytest.mark.parametrize("name", ["sphere", "cone", "rounded punch"])
 def test_noisy_tables(name: str, noise: float) -> None:
-    """The median of few seeds."""
+    """The median error over five seeds."""
     found = []
     for seed in range(5):
         table = instrument_tables.noisy(name, 200, noise, seed)

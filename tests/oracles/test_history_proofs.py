@@ -186,7 +186,7 @@ def test_oblique_loading_sticks_and_shifts_the_friction_limit(name: str, directi
 
 @few
 def test_normal_load_at_constant_displacement(name: str) -> None:
-    """Increasing: no slip. Decreasing: the force equals first loading at the lower load."""
+    """Increasing: no slip. Decreasing: the force of first loading at the lower load."""
     u = 0.3 * full_slip_displacement(DEPTH)
     computed = history(PROFILES[name], [(DEPTH / 2, 0.0), (DEPTH / 2, u), (DEPTH, u)], MATERIAL)
     with mp.workdps(slip.WORK_DIGITS):

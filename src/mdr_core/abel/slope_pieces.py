@@ -59,7 +59,7 @@ def integrals(
     x = (left[:, None] + length[:, None] * _FAR_NODES).ravel()
     weighted = sparse.diags((length[:, None] * _FAR_WEIGHTS).ravel()) @ slope(x)
     inner, outer = (left, left + length)[::sign]
-    # In this order of radii a piece is far up to its limit.
+    # In this order of radii a piece is far from all radii before its limit.
     limit = sign * inner - _FAR * length
     limits, squares = limit.repeat(_FAR_NODES.size), sign * (x * x)
     total = np.zeros((r.size, *weighted.shape[1:]))
@@ -168,7 +168,7 @@ class SlopePieces:
 
         Parameters
         ----------
-        low, high, width : ends c and a of the annulus, and a - c as accurate as it is narrow.
+        low, high, width : ends c and a of the annulus, and a - c, accurate by itself.
         r : radii [length], shape (m,).
         """
         # Next to the axis a smooth stress is constant to second order.
@@ -199,7 +199,7 @@ class SlopePieces:
 
         Parameters
         ----------
-        low, width : inner radius and width, as accurate as it is narrow [length].
+        low, width : inner radius and width, each accurate by itself [length].
         kernels : K of each integral.
         """
         if width == 0:

@@ -237,7 +237,7 @@ def _of_segment(kinds: NDArray[np.str_], segment: str) -> Indices:
 def _require_rise(depth: Array, force: Array) -> None:
     """Raise InputError if the force falls with the depth.
 
-    It falls to a pull-off too, whose least force is farther from most forces than the largest one.
+    A fall to a pull-off is valid: its least force is farther from the median than the largest one.
     """
     height, order = force - np.median(force), np.argsort(depth, kind="stable")
     tenth = max(depth.size // 10, 1)

@@ -3,7 +3,7 @@
 A path starts from the unloaded bodies, or from the end of another path, whose state can be stored
 as JSON.
 
-Both loads vary linearly between two samples, in the plane in which the tangential control is exact:
+Both loads vary linearly between two samples, in the pair to which the tangential control belongs:
 a displacement with the depth, a tangential force with the normal force. If the normal control
 belongs to the other pair, it is converted at the samples.
 """
@@ -127,7 +127,7 @@ class SampledPath:
 
     @cached_property
     def loads(self) -> Array:
-        """Loads at the start and at each sample, shape (2, n + 1); the normal loads are even.
+        """Loads at the start and at each sample, evenly spaced in the normal load, (2, n + 1).
 
         Raises InputError at `load` for a normal load that has no contact.
         """

@@ -159,7 +159,7 @@ class PolylineStack:
         self._extend(below, slope)
 
     def _slip(self, forward: float, backward: float) -> None:
-        """Cut the polyline where it exceeds the sums of the load point, and extend it to that."""
+        """Cut the polyline where it exceeds the sums of the load point, and extend it to there."""
         upper = self.top
         while upper > 0 and (
             self.rows[upper - 1, FORWARD] > forward or self.rows[upper - 1, BACKWARD] > backward

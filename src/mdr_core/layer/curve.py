@@ -69,7 +69,7 @@ class DepthCurve:
         s = edges[:-1] + np.diff(edges) * np.square((nodes[:, None] + 1) / 2)
         found = states(self.profile, self.layer, s.ravel())
         own = found.depth, found.force, found.stiffness
-        # Next to the tip a quantity may be zero in double precision; the layer is as a half-space.
+        # Next to the tip a quantity may underflow; the layer then acts as a half-space.
         with np.errstate(divide="ignore", invalid="ignore"):
             ratios = [
                 np.where(of > 0, part.reshape(s.shape) / of, 1.0)

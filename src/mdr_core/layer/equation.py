@@ -113,7 +113,7 @@ def _block(
     growth = punch @ rise + q1 * (kernel[:, -1, -1] + _dot(edge, moved))
     condition = stiffness / where(a > 0, 2 * a, 1.0) + 0 * part
     if profile.is_flat_punch:
-        # The contact coordinate of a flat punch, whose radii may be one for each contact.
+        # The contact coordinate of a flat punch is its depth; each contact may have its own radius.
         depth = coordinate
         force, correction = depth * stiffness, depth[:, None] * (punch - 1)
         weights = depth[:, None] * whole

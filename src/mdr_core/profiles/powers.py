@@ -173,7 +173,7 @@ class Paraboloid(PowerLaw):
     def coefficient(self) -> Parameter:  # type: ignore[override]  # a field of other powers
         return 1 / (2 * self.radius)
 
-    # Millions of contacts are of this kind: what they need is written without powers.
+    # Millions of contacts are of this kind, so their formulas avoid the slower powers.
 
     def g(self, x: Array) -> Array:
         return x * x / self.radius

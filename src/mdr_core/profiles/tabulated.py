@@ -206,7 +206,7 @@ class Tabulated(Profile):
 
     def _slope_integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
         """int_0^a density(x) g'(x) dx, by Gauss's rule on each piece."""
-        # Halves of the last radius, so that 1/x is smooth on a piece.
+        # Successive halves of the last radius as edges, so that 1/x is smooth on a piece.
         a, halves = np.ravel(coordinate), self.domain / 2.0 ** np.arange(1, -np.log2(EPS))
         edges = np.union1d(self._edges, halves)
         piece = edges[1:-1].searchsorted(a, side="right")
@@ -331,7 +331,7 @@ def tip_points(
     area = np.array([c * h**2.0 ** (1 - i) for i, c in enumerate(coefficients)]).sum(axis=0)
     bad = np.flatnonzero((np.diff(area) <= 0) | (area[1:] <= 0))
     if bad.size:
-        # At the largest height no other one is left.
+        # Report the next valid height, or the largest one if there is none.
         valid = h[min(bad[-1] + 2, h.size - 1)]
         detail = (
             f"A(h) is not positive and increasing below the height {valid:.4g}: give a lowest "

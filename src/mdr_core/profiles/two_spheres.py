@@ -115,12 +115,12 @@ class TwoSpheres(Spheroid):
         return self._artanh_sum(x) + x * rest * ((small + large) / outer)
 
     def _artanh_sum(self, x: Array) -> Array:
-        """artanh(x/R_1) + artanh(x/R_2) as one logarithm, which cancels in no socket [1]."""
+        """artanh(x/R_1) + artanh(x/R_2) as one logarithm, free of cancellation [1]."""
         small, large = self.radius, self.other
         return 0.5 * np.log1p(2 * x * ((small + large) / ((small - x) * (large - x))))
 
     def reduced_force(self, coordinate: Array) -> Array:
-        """2 int_0^a x g'(x) dx, because closed forms cancel in a socket. See `Profile`."""
+        """2 int_0^a x g'(x) dx, because closed forms suffer cancellation. See `Profile`."""
         return self._integral(lambda x: 2 * x * self.dg(x), coordinate)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:

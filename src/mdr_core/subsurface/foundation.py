@@ -37,7 +37,7 @@ Contact: TypeAlias = NormalContact | TangentialContact | ContactState
 # interpolation errs by 5^-n.
 _FAR: Final = 1.3
 _AT: Final = gauss_legendre(NODES)[0]
-# From the values of Legendre polynomials to those of Lagrange's at the nodes.
+# From values of Legendre polynomials to values of Lagrange's polynomials at the nodes.
 _TO_NODES: Final = np.linalg.inv(legendre.legvander(_AT, NODES - 1))
 
 

@@ -321,7 +321,7 @@ def _peak(
     high = (fine == maximum_filter(fine, 3)) & (fine >= _ALMOST * values.max())
     # One direction stands for all on the axis, and for both beside the plane of the load.
     high[1:, r == 0] = high[len(_ANGLES) - 1 :, r < 0] = False
-    # The spline waves beside the cusp at the edge of a sliding contact, and may hide it.
+    # The spline oscillates beside the cusp at the edge of a sliding contact, and may hide it.
     at = np.unravel_index(values.argmax(), values.shape)
     high[at[0], _FINER * at[1], _FINER * at[2]] = True
     k, i, j = np.nonzero(high)

@@ -88,11 +88,11 @@ class WearEvolution(validity.ContactResults, WornSurface):
     def error_estimate(self) -> float:
         """Estimate of the relative error of every scalar [1].
 
-        Twice the difference from a run on two thirds of the nodes with a looser integrator, the
-        tolerance of that, and the rounding error of the contact before wear. With a break of the
+        Twice the difference from a run on two thirds of the nodes with a looser integrator, its
+        tolerance, and the rounding error of the contact before wear. With a break of the
         profile in the worn annulus both runs may err alike: there their absolute difference counts,
         and the error of the wear in the first cycle, whose friction work is known.
-        The error of a normal force that wear takes away in full slip is relative to the one before.
+        In full slip the error of the normal force is relative to the force before wear.
         """
         worst = self._absolute_difference if self._has_break else 0.0
         for name in SCALARS:
@@ -106,7 +106,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
     @property
     def _first_cycle_error(self) -> float:
-        """Relative error of the wear in the first cycle, by its friction work [1]."""
+        """Relative error of the wear in the first cycle, from its friction work [1]."""
         initial = self.initial
         state = AnnulusState(initial, initial.vector[:, None])
         slipped = 2 * np.pi * state.end**3 * (initial.maps.volume @ (state.stress * state.slip))

@@ -37,8 +37,8 @@ _LOOSEST: Final = 0.2
 def integrate(initial: InitialState, cycles: Array, rtol: float) -> WornSurface:
     """Return the worn contact at ascending numbers of cycles, and when wear stopped.
 
-    That is infinite if it is not reached. The pressure in the annulus decays within some units of
-    scaled cycles. Once it is below `rtol` everywhere, the state stays as it is. Source: notes, §11.
+    This number is infinite if wear goes on. The pressure in the annulus decays within a few units
+    of scaled cycles. Once it is below `rtol` everywhere, the state is constant. Source: notes, §11.
 
     Raises InputError if the contact reaches the end of the profile, or full slip begins or ends,
     and AccuracyError if the integrator fails or takes too many steps, or the contact grows too far.

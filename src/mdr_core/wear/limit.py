@@ -292,7 +292,7 @@ class LimitingWear(validity.ContactResults):
         product = np.where((away <= ADJACENT * c) | (step <= 0), inf, away * (r + c))
         found, error = [0.0], error + EPS * c
         if "pressure" in names:
-            # 1/sqrt(c - r) changes by no more, and up to all of it where c may be either side of r.
+            # Bound of the relative change of 1/sqrt(c - r); infinite where c may pass r.
             changes = error / np.where(product < inf, away, inf)
             found.append(np.max(np.where(r < c + error, changes, 0.0)))
         if names & {"worn_depth", "limiting_profile"}:

@@ -184,10 +184,9 @@ def _from(
     unbounded: Flags | bool = False,
     moved: tuple[Array, Array] | None = None,
 ) -> LimitingStick:
-    """Return the stick zone before wear.
+    """Return the stick zone before wear, or after it has moved.
 
-    Or, if it has moved, the one at a slip width in the contact coordinate, with the relative error
-    of that.
+    `moved` is the new slip width in the contact coordinate, and its relative error.
     """
     normal, slides = contact.normal, separated | unbounded
     if moved is None:

@@ -23,7 +23,7 @@ from mdr_core.typing import Array
 from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.initial_state import InitialState
 
-# A rate by wear alone, and per unit of the rates of b, c and w_c, or d.
+# Parts of a rate: due to wear alone, and per unit of the rates of b, of c, and of w_c or d.
 _WEAR, _END, _STICK, _RETAINED = range(4)
 # Rate at which the integrator's errors of gamma(a) - D, and of the force in full slip, decay: fast
 # beside the wear, whose unit is 1, and slow beside the steps of the first cycles. By trial, rates
@@ -164,7 +164,7 @@ class _MovingAnnulus(AnnulusState):
 
     @cached_property
     def conditions(self) -> Array:
-        """Rates that are zero, of depths, for each edge that moves, (m, 4, k)."""
+        """Rates of depths that must be zero, one for each edge that moves, (m, 4, k)."""
         rows = [self._outer_edge]
         if self.initial.constant_force or self.initial.stick_shrinks:
             rows.append(self._carried_force / self.initial.length_unit)
@@ -211,7 +211,7 @@ class _MovingAnnulus(AnnulusState):
     def _carried_force(self) -> Array:
         """Rate of the integral of the loads, normal or, where the stick zone shrinks, tangential.
 
-        The integral of gamma_0 changes at its ends only: by values at nodes it would jump where one
+        The integral of gamma_0 changes at its ends only: a sum over nodes would jump when a node
         passes a break of the slope.
         """
         initial, maps, a, b, c = (
@@ -235,7 +235,7 @@ class _MovingAnnulus(AnnulusState):
         return -rate
 
     def gradients(self) -> tuple[Array, Array]:
-        """Return the gradients by `worn`, of its rates (n, n) and of the velocity (4, n).
+        """Return the gradients in `worn`, of its rates (n, n) and of the velocity (4, n).
 
         The state must be a single one.
         """

@@ -43,7 +43,7 @@ class WornSurface(AnnulusState):
         normal = self.initial.normal
         if self.initial.constant_force or not self.initial.slips:
             return np.full(self.cycles.shape, float(normal.normal_force))
-        # Once nothing touches, rounding errors are left of either sign.
+        # After the loss of contact only rounding errors of either sign remain.
         return np.maximum(2 * float(normal.e_star) * self.force, 0.0)
 
     @cached_property
@@ -115,7 +115,7 @@ class WornSurface(AnnulusState):
     def _worn_depth(self, row: int, radius: Array) -> Array:
         """Return h(r) = (sigma - S_0) H(r - c) + (2/pi) int_c0^min(r,c) arccos(x/r) dw_c(x).
 
-        The second term is of the springs that a growing stick zone has passed.
+        The second term belongs to the springs that a growing stick zone has passed.
         Source: mdr-5, Eq. (5.75), integrated by parts; notes, §11.
         """
         result, full_slip = np.zeros(radius.shape), self.initial.full_slip
@@ -159,7 +159,7 @@ class WornSurface(AnnulusState):
         return np.asarray(maps.at(maps.cosine, squares) * maps.at(even, squares))
 
     def _stick_stress(self, row: int, radius: Array) -> Array:
-        """Return the part of p/E* at r < c that is not of the unworn shape inside c.
+        """Return the part of p/E* at r < c beyond that of the unworn shape inside c.
 
         (1/pi) int g'(x)/sqrt(x^2 - r^2) dx over c < x < a, with the step g(c+) - g(c) of a worn
         layer that is too thin for the nodes, and over the worn part of the springs inside c.

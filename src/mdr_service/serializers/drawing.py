@@ -45,7 +45,7 @@ _METADATA: Final = {
     "png": {"Software": None},
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
-# Matplotlib's annotations are narrower than what it takes.
+# Matplotlib accepts more types than its annotations declare.
 _Axes = Any
 
 
@@ -91,7 +91,7 @@ def draw(
                 _draw_curves(each, panel)
             each.set_ylabel(text(panel.y))
             named |= {line.get_label(): line for line in each.get_legend_handles_labels()[0]}
-        # At the right end stands a power of ten.
+        # Keep the right end free: Matplotlib writes the axis' power of ten there.
         axes[-1].set_xlabel(text(panels[0].x), loc="left" if is_small else "center")
         if named or title:
             style: Any = {"loc": "outside upper center", "ncols": 1 if is_small else 3}
