@@ -48,7 +48,7 @@ _LAW: Final = PARAMETERS[:2]
 # First trials: amplitudes over the amplitude of full slip, and parts of it in the rig; number of
 # points of first loading between which their forces are interpolated.
 _TRIED, _IN_RIG, _POINTS = np.geomspace(0.01, 30.0, 40), np.linspace(0.0, 0.96, 25), 200
-# Points for each parameter.
+# Minimum number of points for each parameter.
 _FEWEST: Final = 2
 # Maximum number of Newton steps, usually about 12, and their relative size at convergence.
 _STEPS, _CONVERGED = 100, 8 * EPS

@@ -57,7 +57,7 @@ def _whole(text: str) -> int:
     return int(text)
 
 
-# A schema that admits null keeps Swagger UI from checking the text, since it takes no exponents.
+# A schema that admits null keeps Swagger UI, which rejects exponents, from checking the text.
 _Number = Annotated[float, BeforeValidator(_number)] | None
 # Type and schema of a parameter that can be a list, or a range.
 _Load = Annotated[Any, BeforeValidator(_load), WithJsonSchema({"type": "number"})] | None

@@ -654,7 +654,7 @@ def test_stresses_beneath_a_singular_edge_keep_their_colours(visit: Visit) -> No
 
 
 def test_narrow_worn_annulus_fills_its_chart(visit: Visit) -> None:
-    """After these cycles, not in the limit, from which the annulus of Eq. (5.90) differs."""
+    """The chart shows the annulus after these cycles, which differs from the limit (5.90)."""
     amplitude = "&mu=0.6&oscillation=tangential_displacement&amplitude=1e-8"
     visit.open(f"?tab=wear&load=20{amplitude}")
     chart = visit.page.locator("figure", has_text="Worn depth").locator(".plot")

@@ -1,4 +1,4 @@
-"""Series with extreme exponents or cancelling terms keep the digits that they claim."""
+"""Series with extreme exponents or cancelling terms are as accurate as their estimates."""
 
 from __future__ import annotations
 

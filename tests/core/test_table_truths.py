@@ -350,7 +350,7 @@ def six_decimals() -> tuple[Array, Array]:
 
 
 def test_rounded_ball_has_a_finite_pressure() -> None:
-    """A sphere of radius 10, from which rounding takes the parabola at the tip."""
+    """A sphere of radius 10, whose rounded heights do not resolve the parabola at the tip."""
     contact = solve(Tabulated(*six_decimals()), 100.0, contact_radius=1.0)
     expected = 100 * BODIES["sphere"].pressure(0.0, 0.1)
     assert float(contact.maximum_pressure) == pytest.approx(expected, rel=1e-3, abs=0)

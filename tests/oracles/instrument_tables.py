@@ -1,7 +1,7 @@
 """Tables as instruments, meshes and spreadsheets write them, each with the body that it measures.
 
 A habit is what a file does to exact heights: it rounds, quantises, adds noise, offsets or repeats
-points. `drawn` combines several of them by a seed, as files do.
+points. `drawn` combines several habits at random, as files do.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def quantised(values: Array, step: float) -> Array:
 
 
 def waviness(random: Generator, r: Array, size: float, length: float) -> Array:
-    """Roughness of a standard deviation and a correlation length."""
+    """Roughness with a given standard deviation and correlation length."""
     waves = 2 * np.pi * random.standard_normal(40) / length
     phases = random.uniform(0, 2 * np.pi, 40)
     return np.asarray(size * np.sqrt(2 / 40) * np.cos(np.outer(r, waves) + phases).sum(axis=1))

@@ -1,6 +1,6 @@
 """Drawing of the panels of a picture with Matplotlib.
 
-Many points are joined by a line. Few are marks: what lies between them was not computed.
+Many points are joined by a line. Few points are marks: no values between them were computed.
 """
 
 import gc
@@ -66,7 +66,7 @@ def draw(
     size : width and height [mm]; by default the usual size.
     units : units that the labels name.
     """
-    # The parts of a figure refer to it, so that the one before would stay beside this one.
+    # The parts of a figure refer to it, which would keep the previous figure in memory.
     gc.collect()
     usual = _WIDTH, FRAME + len(panels) * _PANEL
     width, height = size or usual
@@ -136,7 +136,7 @@ def _draw_map(axes: _Axes, panel: Map) -> Any:
     signed = shown.min() < 0
     largest = min(np.abs(shown).max(), bound) or 1.0
     style = {"cmap": "RdBu_r" if signed else "viridis", "vmin": -largest * signed, "vmax": largest}
-    # Each value fills the cell around its point: what lies between was not computed.
+    # Each value fills the cell around its point: no values between points were computed.
     colors = axes.pcolormesh(panel.at_x, panel.at_z, shown, rasterized=True, **style)
     axes.grid(visible=False)
     if np.ptp(panel.at_z):
