@@ -44,9 +44,9 @@ _NOTES: Final = (
         "with the processor."
     ),
     (
-        "`model_error` is an estimate: its deviation is the factor between it and the error against "
-        "the more complete model of the source, less one. The bound of a force with transverse slip is the "
-        "estimate, 0.2 (ν/(4 − 2ν))²."
+        "`model_error` is an estimate: its deviation is the factor between it and the error "
+        "against the more complete model of the source, less one. The bound of a force with "
+        "transverse slip is the estimate, 0.2 (ν/(4 − 2ν))²."
     ),
     (
         "The tables of Buie's pair no. 1 converge slowly, with the root of the spacing: the "

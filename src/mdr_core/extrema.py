@@ -39,8 +39,8 @@ _DIFFERENCE: Final = 1e-5
 _FARTHEST: Final = 1e150
 LEAST_GAP: Final = 1e-13
 """1 - (r/a)^2 below which the infinite tension of adhesion is taken to be constant."""
-# Points across the bracket of a peak, in parts of it. Each interval of a table, whose interpolation
-# may have a peak in every one, is sampled as finely.
+# Points across the bracket of a peak, in parts of it. The same points sample each interval of a
+# table, because its interpolation may have a peak in each.
 _NINE: Final = np.linspace(0.0, 1.0, 9)
 # a/R beyond which the flank of a spherical-tip cone adds the same pressure everywhere on the tip,
 # with a relative error of (R/a)^2.

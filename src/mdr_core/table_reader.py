@@ -154,8 +154,8 @@ def read_curve(file: str | Path, units: Sequence[str | None] = (None, None)) -> 
 
     Parameters
     ----------
-    file : see `read_table`; columns of depth and force, or distance and load. The depth of a
-        column of tip-sample separations is their negative. Two columns of each quantity, on
+    file : see `read_table`; columns of depth and force, or distance and load. Tip-sample
+        separations become depths by a change of sign. Two columns of each quantity, on
         approach and on retraction, are two segments in succession.
     units : units of depth and force, where no heading names them.
 

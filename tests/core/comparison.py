@@ -109,7 +109,7 @@ def wrong(
     value, expected : the result and its stored value.
     bound : largest relative error of the method.
     allowed : allowance for the rounding error of the inputs.
-    estimate : estimate of the relative error, without that of the inputs.
+    estimate : estimate of the relative error, without the errors of the inputs.
     """
     error = relative_error(value, expected)
     if not error <= bound + allowed:

@@ -561,7 +561,7 @@ def test_contact_beyond_the_table_is_rejected() -> None:
 
 
 def test_waviness_of_few_points_is_no_shape() -> None:
-    """A cone and paraboloid of 19 points was taken for exact: a depth erred by 10 %."""
+    """19 waved points of a cone and paraboloid: the depth is right, or `smoothed` is raised."""
     table = instrument_tables.drawn(249)
     a = np.array(table.radii())
     depth = np.array([table.depth(each) for each in a])

@@ -30,7 +30,7 @@ _DETACHED: Final = 3
 _SEEN: Final = 3.0
 # Increase of the sum of squares, over the variance of the noise, up to which w = 0 is as likely.
 _NO_WORSE: Final = 0.1
-# Increase up to which it determines the error of w; the slopes give too small an error there.
+# Increase of this sum up to which it determines the error of w, which slopes underestimate.
 _FAR: Final = 9.0
 # Probability by chance, below which points do not belong to a fit. Each curve has several tests.
 _CHANCE: Final = 1e-4
