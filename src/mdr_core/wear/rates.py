@@ -104,7 +104,7 @@ class _MovingAnnulus(AnnulusState):
     def worn_rates(self) -> Array:
         """Rates of `worn` at nodes that move with the edges, (4, n, k).
 
-        With s^2 = r^2 - c^2 = b^2 z the slip beyond that of the unworn shape is s worn. At a place
+        With s^2 = r^2 - c^2 = b^2 z the slip in excess of the unworn shape is s worn. At a place
         r it grows by p sigma - (2/pi) arccos(c/r) w_c'. A node keeps its z: r r' = c c' + z b b',
         so that
 
