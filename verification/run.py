@@ -39,14 +39,14 @@ _NOTES: Final = (
     (
         "A published reference value is printed in its source, or a closed form of the source "
         "evaluated with 30 digits in `verification/`. Deviations, bounds and uncertainties of the "
-        "reference are relative to the reference value, of stresses to the peak pressure. "
+        "reference are relative to the reference value, for stresses to the peak pressure. "
         "Deviations are rounded up to one digit; below 1e-11 they are rounding error, which varies "
         "with the processor."
     ),
     (
-        "`model_error` is an estimate: its deviation is the factor between it and the error to the "
-        "fuller model of the source, less one. The bound of a force with transverse slip is the "
-        "estimate, 0.2 (ν/(4 − 2ν))²."
+        "`model_error` is an estimate: its deviation is the factor between it and the error "
+        "against the more complete model of the source, less one. The bound of a force with "
+        "transverse slip is the estimate, 0.2 (ν/(4 − 2ν))²."
     ),
     (
         "The tables of Buie's pair no. 1 converge slowly, with the root of the spacing: the "
@@ -54,8 +54,8 @@ _NOTES: Final = (
     ),
     (
         "Measured impacts (`kharaz`) and finite elements (`wu`) are read from figures, with the "
-        "uncertainty of reading alone; their deviations are those of the tangential restitution "
-        "e_t, and of w/(mu v)."
+        "uncertainty of reading alone; their deviations refer to the tangential restitution "
+        "e_t, and to w/(mu v)."
     ),
     (
         "For the punch with rounded edges of Ciavarella (Int. J. Solids Struct. 36 (1999) "

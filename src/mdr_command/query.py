@@ -162,7 +162,7 @@ def _content(arguments: argparse.Namespace) -> bytes:
 def _curve(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, object]:
     """Return the lists of the curve in a file, in metres, newtons and seconds.
 
-    If the file names the segments, they are those of a fit without the drift of a hold.
+    If the file names the segments, they select the points, except in a fit with `drift`.
     """
     if not arguments.file:
         raise InputError((), "a fit by options needs the file of its curve: mdr fit curve.csv")
@@ -206,7 +206,7 @@ def _table(arguments: argparse.Namespace, given: dict[str, str]) -> dict[str, ob
     else:
         r, f = _tip(area, [vars(arguments)[name] for name in _HEIGHTS], unit or "m")
     if (count := r.size) > (most := SETTINGS.max_table_points):
-        # An even choice of as many points as a request may have.
+        # Choose evenly among the points, as many as a request may have.
         _say(arguments, file, f"{count} points, of which {most} are used")
         chosen = np.argsort(r)[np.linspace(0, count - 1, most).round().astype(int)]
         r, f = r[chosen], f[chosen]

@@ -91,7 +91,7 @@ def _bind(host: str, port: int) -> socket.socket:
         family, type_, protocol, _, address = socket.getaddrinfo(
             host, port, type=socket.SOCK_STREAM
         )[0]
-        # The event loop sends short responses at once (TCP_NODELAY) if the protocol is named.
+        # The event loop sets TCP_NODELAY only on sockets whose protocol is given.
         listener = socket.socket(family, type_, protocol)
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind(address)

@@ -38,8 +38,8 @@ from mdr_core.typing import Array, Indices
 
 # Parts of c at which a state loses its stability.
 _SHARES: Final = {"indentation_depth": 0.5, "normal_force": 1.5}
-# Distances of nodes from the axis and from breaks, 12 in a decade: phi bends over a factor of e or
-# more of them.
+# Distances of nodes from the axis and from breaks. Twelve in a decade resolve phi, which bends over
+# a factor of e or more.
 _DISTANCES: Final = np.logspace(-75, 75, 1801)
 # Nodes between the breaks of a table, where g' is a polynomial.
 _IN_PIECE: Final = 9
@@ -151,7 +151,7 @@ class Curve:
         return np.append(first, ends[~stable[at]]), np.append(ends[stable[at]], nodes[-1])
 
     def outermost(self, name: str, load: Array) -> tuple[Array, int]:
-        """Return the outermost stable coordinate of each load (n,), and the most states of one."""
+        """Return the outermost stable coordinate of each load (n,), and the maximum of states."""
         low, high = self.stable[name]
         least = self.load(name, low)
         holds = load[:, None] >= least - ROUNDING * np.abs(least)
@@ -310,7 +310,7 @@ class AdhesiveContact(NormalContact):
 
     @property
     def _slope_error(self) -> Array:
-        """Relative error of g'(a) by the error of the contact radius, large next to a flat [1]."""
+        """Relative error of g'(a) due to that of the contact radius, large next to a flat [1]."""
         profile, edge = self.profile, self.coordinate
         if profile.is_flat_punch:
             return full(0.0, edge)

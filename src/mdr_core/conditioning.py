@@ -67,7 +67,7 @@ def of_forces(contact: NormalContact, size: Array, limit: Array) -> float:
     """Return the largest condition number of a history prescribed by forces near full slip [1].
 
     `size` and `limit` are |F_x| and mu F_N of every load step [force]; `contact` has the normal
-    contact of each, or the one of all.
+    contact of each step, or a single one for all.
     """
     partial = (limit > 0) & (size < limit)
     ratio = np.where(partial, quotient(size, limit), 0.0)

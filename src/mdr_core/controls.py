@@ -11,7 +11,7 @@ def default_samples(normal: str, tangential: str) -> int:
     """Return the samples of a load step on which both controls change.
 
     One sample is exact on the straight step of a depth with a displacement, or of a normal with a
-    tangential force. Controls of different pairs follow a curve.
+    tangential force. With controls of different pairs the step is a curve.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ _FEWEST: Final = 8
 _CONSTANT: Final = 0.05
 # Largest rate of the other quantity, over its range divided by the duration.
 _SLOW: Final = 1.0
-# Standard errors of a mean over a third of a window that must not hide a drift.
+# Standard errors of a mean over a third of a window that the largest drift of a hold must exceed.
 _CHANCE: Final = 2.0
 # Deviation of the points of a hold from its level, in standard deviations.
 _LEVEL: Final = 3.0
@@ -34,7 +34,7 @@ _SHARP: Final = 0.25
 _STEP: Final = 0.04
 # Largest depth before contact, over the range of depths.
 _APPROACH: Final = 0.05
-# Largest difference from the force before contact, over the range of forces, that is no hold.
+# Largest difference from the force before contact, over the range of forces, that is not a hold.
 _LOADED: Final = 0.05
 # Largest force of a hold that shows the drift, above the least force, over the range.
 _LOW: Final = 0.5

@@ -63,13 +63,13 @@ def piecewise(
 ) -> Any:
     """Return below(place) up to `start` and beyond(place) beyond it.
 
-    Each formula sees only places on its own side.
+    Each formula is evaluated only at places on its own side.
 
     Parameters
     ----------
     place : numbers or arrays at which the formulas are evaluated.
     start : place beyond which `beyond` applies.
-    below, beyond : formulas, each of a place.
+    below, beyond : formulas, functions of a place.
     """
     if is_number(place) and is_number(start):
         return _number(below(place) if place < start else beyond(place))
@@ -95,7 +95,7 @@ def in_order(weights: Array, values: Array) -> Array:
     added = (1,) * (values.ndim - weights.ndim)
     spread = weights.reshape(weights.shape[:1] + added + weights.shape[1:])
     terms = np.multiply(spread, values, order="C")
-    # NumPy adds contiguous numbers pairwise, but rows in their order.
+    # NumPy adds contiguous numbers pairwise, but rows one after the other.
     return np.add.accumulate(terms)[-1] if terms[0].size == 1 else np.add.reduce(terms)
 
 

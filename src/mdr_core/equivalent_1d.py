@@ -26,7 +26,7 @@ NARROW: Final = 0.05
 as long as the load is at most this part of the full-slip load. Beyond these limits differences
 amplify rounding errors at most 20-fold. Loads that differ from the full-slip load by less than this
 part of it are ill-conditioned (`conditioning`)."""
-# Slope at a coordinate, which is also given as a break and the distance from the break.
+# Slope at a coordinate. Its arguments are the coordinate, a break, and the distance from the break.
 _Slope = Callable[[Array, Array, Array], Array]
 
 

@@ -19,8 +19,8 @@ from mdr_core.doubles import EPS
 from mdr_core.errors import InputError, Notice
 from mdr_core.typing import Array
 
-# Singular value of the slopes, of unit columns, over the largest, at which two parameters have the
-# same effect, and the least part of a parameter in that effect. Rounding leaves 1e-16; fits that
+# Singular value of the normalised slopes, over the largest, below which parameters have the same
+# effect, and the smallest component of a parameter in it. Rounding leaves 1e-16; fits that
 # determine their parameters have 1e-6 or more.
 _SAME, _PART = 1e-8, 0.1
 # Relative decrease of the sum of squares at which Gauss-Newton steps take over.
@@ -72,21 +72,21 @@ class Precision:
     q: Array
     """Orthonormal slopes, shape (k, n)."""
     inverse: Array
-    """Changes of the parameters, times `scale`, by those of the curve along `q`, shape (n, n)."""
+    """Derivatives of the parameters, times `scale`, in the curve along `q`, shape (n, n)."""
 
     @property
     def effects(self) -> Array:
-        """Changes of the parameters by those of the curve along `q`, shape (n, n)."""
+        """Derivatives of the parameters in the curve along `q`, shape (n, n)."""
         return self.inverse / self.scale[:, None]
 
     @property
     def deviations(self) -> Array:
-        """Standard deviations of the parameters, over that of the curve, shape (n,)."""
+        """Standard deviations of the parameters per standard deviation of the curve, (n,)."""
         return np.asarray(np.linalg.norm(self.effects, axis=1))
 
     @classmethod
     def of(cls, slopes: Array, names: Sequence[str], curve: str) -> Self:
-        """Return the precision, or an InputError if the curve cannot tell parameters apart.
+        """Return the precision, or an InputError if the curve cannot distinguish parameters.
 
         Parameters: the slopes, shape (k, n); the parameters; the argument at fault.
         """
@@ -109,7 +109,7 @@ class Precision:
     def error(self, relative: float, residual: Array, curve: Array) -> float:
         """Return a bound on the numerical error of the parameters, over their sizes [1].
 
-        Parameters: the relative error of the fitted values; the residuals, and the curve.
+        Parameters: the relative error of the curve, the residuals, and the curve itself.
         """
         if not self.scale.size:
             return relative
@@ -141,7 +141,7 @@ def linear(
     """Return the least sums of squares of `measured` less factor * shape + offset.
 
     Parameters: shapes, shape (..., k), and measured values, shape (k,); the factor if it is known;
-    False for an offset of 0. The factors and offsets follow the sums, shape (...).
+    False for an offset of 0. Also return the factors and offsets, each of shape (...).
     """
     mean, middle = shapes.mean(axis=-1) * with_offset, float(measured.mean()) * with_offset
     x, y = shapes - mean[..., None], measured - middle
@@ -174,7 +174,7 @@ class CurveModel(ABC):
 
     @cached_property
     def fitted(self) -> tuple[Array, Array]:
-        """Forces and slopes of the best parameters."""
+        """Forces and slopes at the best parameters."""
         return self.at(self.best)
 
     @property

@@ -39,11 +39,11 @@ _DIFFERENCE: Final = 1e-5
 _FARTHEST: Final = 1e150
 LEAST_GAP: Final = 1e-13
 """1 - (r/a)^2 below which the infinite tension of adhesion is taken to be constant."""
-# Points across the bracket of a peak, in parts of it. Each interval of a table, whose interpolation
-# may have a peak in every one, is sampled as finely.
+# Points across the bracket of a peak, in parts of it. The same points sample each interval of a
+# table, because its interpolation may have a peak in each.
 _NINE: Final = np.linspace(0.0, 1.0, 9)
 # a/R beyond which the flank of a spherical-tip cone adds the same pressure everywhere on the tip,
-# up to a relative (R/a)^2.
+# with a relative error of (R/a)^2.
 _FAR: Final = 1e8
 # All contacts of rounded punches are similar. One spline serves them up to this absolute value of
 # log(s/b); its number of places and its degree leave an error of 3e-15.
@@ -95,7 +95,7 @@ def largest_stress(
 def _of_similar(profile: Profile, edge: Array) -> Array:
     """Largest pressure over E* of kinds whose contacts are similar [1], NaN where unknown."""
     if isinstance(profile, Power):
-        # The stress over the slope g' is a constant of the exponent.
+        # The stress over the slope g' depends on the exponent alone.
         exponent = where(profile.exponent > 1, number(1.0) * profile.exponent, 2.0)
         return np.vectorize(_over_slope, otypes=[float])(exponent)[()] * profile.dg(edge)
     if isinstance(profile, RoundedPunch):
@@ -112,7 +112,7 @@ def _of_similar(profile: Profile, edge: Array) -> Array:
 
 
 def pressure_and_slope(profile: Profile, edge: Array) -> tuple[Array, Array]:
-    """Return the largest pressure over E* and the derivative of its logarithm by that of the edge.
+    """Return the largest pressure over E* and its logarithmic derivative in the edge.
 
     Parameters: see `largest_stress`.
     """
@@ -160,8 +160,8 @@ def coordinate_from_pressure(profile: Profile, target: Array) -> Array:
 def largest_with(profile: Profile, edge: Array, loaded: Flags, added: _Field) -> Array:
     """Return the largest sum of the stress and of another field, each of a contact [1].
 
-    The other field must fall from the axis wherever the stress is known to. Within a flat it must
-    make the sum largest on the axis or at the edge of the flat.
+    The other field must fall from the axis wherever the stress is known to. Within a flat, the sum
+    must be largest on the axis or at the edge.
 
     Parameters
     ----------

@@ -14,25 +14,25 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import composite_rule
 from mdr_core.typing import Array, Flags, Parameter
 
-# Relative error by the neglected radial displacement, over |beta| and the slope of a cone. Source:
-# hay, by F/F_Sneddon to first order; a paraboloid has three quarters.
+# Relative error due to the neglected radial displacement, over |beta| and the slope of a cone.
+# Source: hay, F/F_Sneddon to first order; a paraboloid has three quarters.
 _RADIAL: Final = 0.63
 ASSUMED_RATIO: Final = 0.3
 """Poisson's ratio of most metals, assumed where the bodies are unknown, and Dundurs' beta."""
 _ASSUMED_BETA: Final = (1 - 2 * ASSUMED_RATIO) / (2 * (1 - ASSUMED_RATIO))
 # Coefficient of a paraboloid in terms of a/R, 3/(2 pi). Source: notes, §8.
 _RADIAL_ROUND: Final = 0.477
-# Compliance that a half-space lacks, over its own 0.46/(E b): that of a cylinder of radius b and
-# length 6 b is L/(pi E b^2).
+# Compliance that a half-space lacks, over its own 0.46/(E b): a cylinder of radius b and
+# length 6 b has L/(pi E b^2).
 _WALL: Final = 3.0
 # Increase of the force at a given depth to first order, over a/R and the share of a body in the
 # compliance, by how the body is held. Source: notes, §8.
 _HELD: Final = {"contacts": 0.6, "stem": 0.85, "free": 1.1, "block": 0.0}
 # Coefficient of a socket in a block.
 _SOCKET: Final = 0.6
-# Error of the force on a bonded incompressible layer over the slope at the edge and (a/h)^2, its
-# levelling off with (a/h)^2, and the power of nu/(1 - nu) by which it falls with compressibility:
-# -0.003, -0.083 and -0.88 at a/h 0.1, 0.5 and 2 for nu = 1/2, and -0.12 at 2 for nu = 0.3.
+# Error of the force on a bonded layer, over the slope at the edge: s y/(1 + l y) (nu/(1 - nu))^c,
+# y = (a/h)^2. It fits -0.003, -0.083 and -0.88 at a/h 0.1, 0.5 and 2 for nu = 1/2, and -0.12 at
+# 2 for nu = 0.3. The constants are s, l and c.
 # Source: manual, Contact with a layer, finite elements.
 _SQUEEZED, _LEVELS, _COMPRESSIBLE = 0.32, 0.114, 2.5
 
@@ -60,18 +60,18 @@ class LoadedContact(Protocol):
 
 
 class Errors(NamedTuple):
-    """Estimated relative errors of each load by a flat half-space or layer as the model [1]."""
+    """Estimated relative errors due to the model, a flat half-space or layer, for each load [1]."""
 
     parts: tuple[Array, ...]
     """Parts of the error of the force at a given depth, which exceeds the error of the depth under
-    a given force: by the finite size of round bodies, by the neglected radial displacement,
-    by the slope, and by the side wall of an elastic punch."""
+    a given force. Their causes: the finite size of round bodies, the neglected radial displacement,
+    the slope, and the side wall of an elastic punch."""
     steepness: Array
     """Slope at the contact edge, or largest a/R of round bodies."""
     radius: Array | None = None
     """Error of the contact radius under a given force; None where the bodies are not round."""
     pressure: Array | None = None
-    """Error of the largest pressure under a given force; None likewise."""
+    """Error of the largest pressure under a given force; None where the bodies are not round."""
 
     @property
     def force(self) -> Array:
@@ -158,7 +158,7 @@ def _base(material: Material) -> float:
 
 
 def thickness_at_a_force(contact: LoadedContact, h: float) -> Array:
-    """Relative error of radius and pressure under a force by a rigid base at the depth h [1].
+    """Relative error of radius and pressure under a force due to a rigid base at depth h [1].
 
     (2/3) (s/pi) (a/h)^3 int_0^oo (1 - L) w^2 dw, to first order in (a/h)^3, with the share s of the
     more compliant body. Source: manual, Contact with a layer.
@@ -177,7 +177,7 @@ def stiffening(tolerance: float, material: Material) -> float:
 
 
 def _on_layer(contact: LoadedContact) -> Parameter:
-    """Relative error of the force by the radial displacement of a layer, 0 without one [1].
+    """Relative error of the force due to the radial displacement of a layer, 0 without one [1].
 
     Over the slope at the edge it is 0.3 (a/h)^2 on thin bonded incompressible layers, and far less
     on compressible ones. Source: manual, Contact with a layer, finite elements.
@@ -206,7 +206,7 @@ def _edge_slope(contact: LoadedContact) -> Array:
 
 
 def _wall_error(contact: LoadedContact) -> Parameter:
-    """Estimated error by the side wall of an elastic body with a flat end, which carries no stress.
+    """Estimated error due to the stress-free side wall of an elastic body with a flat end.
 
     The flank beyond the contact edge counts as far as it is steeper than at the edge, up to the
     slope 1, and the body by its share in the compliance. [1]

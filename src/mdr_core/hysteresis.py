@@ -1,6 +1,6 @@
 """Shear modulus and friction coefficient from a hysteresis loop under a constant normal load.
 
-After a reversal of the displacement the force follows the law of first loading, enlarged twice
+After a reversal of the displacement the force follows the law of first loading, scaled by two
 (Masing), also with a rig of compliance C in series, U = u + C F.
 
 Source: mindlin-deresiewicz; notes, §15.
@@ -43,18 +43,18 @@ PARAMETERS: Final = (
     "displacement_offset",
 )
 """Quantities that can be fitted."""
-# Those of the law of the contact.
+# Parameters of the contact law.
 _LAW: Final = PARAMETERS[:2]
-# Amplitudes that are tried first, over that of full slip; parts of the latter in the rig; points of
-# first loading between which the forces are interpolated for this.
+# First trials: amplitudes over the amplitude of full slip, and parts of it in the rig; number of
+# points of first loading between which their forces are interpolated.
 _TRIED, _IN_RIG, _POINTS = np.geomspace(0.01, 30.0, 40), np.linspace(0.0, 0.96, 25), 200
-# Points for each parameter.
+# Minimum number of points for each parameter.
 _FEWEST: Final = 2
-# Most steps of Newton's method, which takes about 12, and their relative size at the end.
+# Maximum number of Newton steps, usually about 12, and their relative size at convergence.
 _STEPS, _CONVERGED = 100, 8 * EPS
 # Range of G* and mu about the start, which keeps the numbers representable.
 _RANGE: Final = 3e6
-# Half width of an interval of 95 % in log G* or log mu, over the error, and at most. Source: notes,
+# Half width of a 95 % interval in log G* or log mu: over the error, and its maximum. Source: notes,
 # §15.
 _HALF, _WIDEST = 1.96, 0.5
 # Compliance over its standard error below which zero is as likely: the sum of squares exceeds its
@@ -116,7 +116,7 @@ class LoopFit(LeastSquaresFit):
 
     @property
     def dissipated_energy(self) -> float:
-        """Energy of a cycle, four times that dissipated on first loading [force length]."""
+        """Energy of a cycle, four times the energy dissipated on first loading [force length]."""
         return 4 * float(self.turning.dissipated_energy)
 
     @property
@@ -144,15 +144,15 @@ def solve(
     Parameters
     ----------
     contact : contact under the constant normal load.
-    tangential_displacement : in the order of the measurement, exact beside the forces [length],
+    tangential_displacement : in the order of the measurement, with negligible errors [length],
         shape (k,).
     tangential_force : measured forces [force], shape (k,).
     fit : parameters to fit, of `PARAMETERS`; by default the first four, less those that are given.
         Unless fitted, the force offset is 0, and the displacement offset the middle between the
         largest and the least displacement, which the turning points may exceed between samples.
     g_star, friction_coefficient : G* [pressure] and mu [1], if they are not fitted.
-    rig_compliance : C of the rig in series, 0 of displacements measured at the contact; fitted if
-        it is not given, which needs a loop with full slip, or almost [length/force].
+    rig_compliance : C of the rig in series, 0 for displacements measured at the contact; fitted if
+        it is not given, which needs a loop in or close to full slip [length/force].
 
     Returns
     -------
@@ -223,7 +223,7 @@ class _Loop(CurveModel):
         return np.append(np.maximum(halves, 0.0), self.amplitude)
 
     def branches(self, first: Array) -> Array:
-        """Return the forces of the loop for those on first loading, by Masing's rule."""
+        """Return the forces of the loop from the forces on first loading, by Masing's rule."""
         return np.asarray(self.sign * (2 * first[..., :-1] - first[..., -1:]))
 
     def first_loading(self, values: Parameters) -> TangentialContact:
@@ -267,8 +267,8 @@ class _Loop(CurveModel):
     def energy_slopes(self, turning: TangentialContact) -> Array:
         """Return the slopes of the energy of a cycle, 4 D, in the fitted parameters.
 
-        On first loading D = mu^2/G* f(G* u/mu) and dD/du = F - k u = s, and the displacement of
-        contact and rig u + C F is that of the turning points.
+        On first loading D = mu^2/G* f(G* u/mu) and dD/du = F - k u = s. The turning points
+        prescribe the displacement u + C F of contact and rig.
         """
         energy, u = float(turning.dissipated_energy), float(turning.tangential_displacement)
         force, stiffness = float(turning.tangential_force), float(turning.tangential_stiffness)
@@ -285,8 +285,8 @@ class _Loop(CurveModel):
     def start(self) -> Parameters:
         """Return the best of many parameters, or an InputError.
 
-        For a given amplitude over that of full slip, and part of the latter in the rig, the force
-        is linear in mu and F_0.
+        Each trial is an amplitude over the amplitude of full slip, and a part of the latter in the
+        rig. For a trial the force is linear in mu and F_0.
         """
         part = np.linspace(0.0, 1.0, _POINTS)
         pressed, depth = self.contact, float(self.contact.indentation_depth)
@@ -375,7 +375,7 @@ class _Loop(CurveModel):
         )
 
     def refused(self) -> InputError:
-        """Return the error of a loop that leaves parameters open."""
+        """Return the error of a loop that does not determine all parameters."""
         if "rig_compliance" in self.fit:
             detail = "give rig_compliance or slide through"
             told = "partial slip cannot tell the contact from the rig"

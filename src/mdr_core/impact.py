@@ -35,7 +35,7 @@ from mdr_core.validation import (
 
 # Numbers of samples of the compression, used one after the other.
 _SAMPLES: Final = tuple(12 << doublings for doublings in range(11))
-# Number of differences between two solutions that an estimate needs. The error falls by a factor of
+# Number of differences of successive solutions in an estimate. The error falls by a factor of
 # four with each doubling, but unevenly, because slip begins and ends anywhere between two samples.
 # In 200 random impacts single differences understated it by a factor of up to 4, and the largest of
 # three did not.
@@ -113,7 +113,7 @@ class Impact(validity.ContactResults):
 
     @property
     def slips_from(self) -> Array:
-        """Least radius with slip [length] in full slip; infinite otherwise."""
+        """Smallest radius with slip [length] in full slip; infinite otherwise."""
         return np.where(self.regime == "full_slip", 0.0, np.inf)
 
     @property
@@ -220,7 +220,7 @@ def solve(
     )
     regime = np.where(np.reshape(slides, speeds.shape), "full_slip", "partial_slip")
     known = e_star if isinstance(e_star, Material) else Material(start.e_star)
-    # The depth of bodies that fly counts against their centres.
+    # The depth of flying bodies is measured against their centres.
     material = replace(known, held=("free", "free"))
     return Impact(
         normal.solve(profile, material, indentation_depth=profile.depth(last)),

@@ -152,8 +152,8 @@ class IntervalMoments:
         normal, ends = self.normal(breaks), np.array([breaks[:-1], breaks[1:]])
         span, first = np.diff(normal), np.arange(breaks.size)
         panels = Moments(span, self.over_smooth(normal[:-1], span, ends, ends[0]))
-        # The moments add up to the step of the slope 2a or 1/(2a). Scaling ensures that, because on
-        # a flat the length in the normal coordinate is dominated by rounding error.
+        # The moments add up to the change of the slope, 2a or 1/(2a). Scaling ensures this, because
+        # on a flat the length in the normal coordinate is dominated by rounding error.
         radius = self.profile.contact_radius(breaks)
         whole = 2 * np.diff(radius)
         whole = whole / (4 * radius[1:] * radius[:-1]) if self.over_forces else whole
@@ -255,7 +255,7 @@ class IntervalMoments:
         if self.over_forces:
             twice = 2 * profile.contact_radius(place)
             rise, measure = rise * twice, measure / np.square(twice)
-        # Rise and measure scale with the width, which is less accurate than the span.
+        # Rise and measure are proportional to the width; the more accurate span replaces it.
         total = in_order(weights, rise)
         # The slope of g may underflow on a flat.
         total = np.where(total > 0, total, inf)

@@ -25,7 +25,7 @@ UNUSABLE: Final = (
 class Body:
     """One elastic body: `youngs_modulus` [pressure] > 0, -1 < `poissons_ratio` <= 1/2 [1].
 
-    `held` tells how a round body is held, on which `model_error` depends.
+    `held` describes how a round body is held, on which `model_error` depends.
     """
 
     youngs_modulus: float
@@ -152,8 +152,8 @@ def from_bodies(
     ----------
     bodies : two of `Body` or "rigid", at least one of them elastic; the first has the profile.
     body_thickness : thickness of the more compliant body, bonded to a rigid base [length]. The
-        contact remains that of half-spaces: `model_error` and the warning `thin_body` count it.
-        A ball has its own size as well, of which the larger error counts.
+        contact is still computed with half-spaces; `model_error` and `thin_body` count it.
+        A ball has its own size as well; the larger error of the two counts.
     layer : thickness and base of the more compliant body, the second one of two equal bodies.
 
     Raises

@@ -32,7 +32,7 @@ _OF_MAXIMUM: Final = 3e-13
 
 # Gauss's rule for the error of pressures, an estimate: nodes on each of equal intervals.
 _OF_PRESSURE: Final = (8, 8)
-# Radius over that of the second knot of a table at which the pressure on the axis is judged.
+# Radius over the second knot of a table at which the pressure on the axis is judged.
 _TIP: Final = 0.03
 # Radii over the contact radius at which the error of pressures is computed, beside the axis.
 _PLACES: Final = (0.3, 0.6, 0.9)
@@ -144,7 +144,7 @@ class NormalContact(validity.ResultsOverLoads):
             return None
         fit, loaded = self.profile.fit, self.loaded
         a = np.ravel(np.where(loaded, self.contact_radius, self.profile.domain))
-        # On the axis itself a sharp tip that is not excluded has an infinite pressure.
+        # Not the axis itself: the pressure is infinite there if the points allow a sharp tip.
         r = np.stack([np.minimum(_TIP * fit.pieces.edges[1], a / 2), *np.outer(_PLACES, a)])
         root = np.sqrt((a - r) * (a + r))[..., None]
         # s = sqrt(x^2 - r^2) has nodes near the axis too.
@@ -240,7 +240,7 @@ class SlippingContact(validity.ResultsOverLoads):
 
     @property
     def slips_from(self: Any) -> Array:
-        """Least radius with slip [length]; infinite without slip."""
+        """Smallest radius with slip [length]; infinite without slip."""
         return where(self.slip_width > 0, self.stick_radius, np.inf)
 
 
@@ -320,7 +320,7 @@ def _coordinate(name: str, profile: Profile, e_star: Parameter, load: Array) -> 
             depth, force, a = (getattr(contact, result) for result in CONTROLS)
             # An energy may underflow, but not overflow.
             results = coordinate, a, a * a, depth, force, np.maximum(depth * force, 1.0)
-        # A prescribed radius may equal that of a flat, which is in contact at zero load.
+        # A prescribed radius may equal the radius of a flat, which is in contact at zero load.
         loaded = coordinate > 0 if name == "contact_radius" else load > 0
         require_representable(("load", name), loaded, *results)
     return coordinate

@@ -87,7 +87,7 @@ def cumulative_rule(points: int) -> tuple[Array, Array, Array]:
     Columns, shape (points, 1); the weights of the value at node j are [j, :, 0].
     """
     nodes, _ = gauss_legendre(points)
-    # Integrals of Legendre polynomials give those of the Lagrange polynomials at the nodes.
+    # Lagrange polynomials at the nodes are integrated as sums of Legendre polynomials.
     integrals = legendre.legval(nodes, legendre.legint(np.eye(points), lbnd=-1))
     cumulative = np.linalg.solve(legendre.legvander(nodes, points - 1).T, integrals) / 2
     shares, weights = composite_rule(points, 1)
@@ -102,5 +102,5 @@ def piecewise_rule(points: int, ends: Array) -> tuple[Array, Array]:
 
 
 def reach_of_power(exponent: float) -> float:
-    """Return log(x0/x) at which (x/x0)^exponent is negligible, or at which doubles end."""
+    """Return log(x0/x) at which (x/x0)^exponent is negligible, up to the range of doubles."""
     return min(-log(EPS) / exponent, LOG_RANGE) if exponent > 0 else LOG_RANGE

@@ -1,8 +1,8 @@
 """Tests of whether the residuals of a least-squares fit are white noise.
 
 All regressors depend on the displacements and the order alone, so that the tests have their sizes
-for independent errors of equal variance. Outliers are cut first. The smallest probability, times
-the number of tests, is that of the curve (Bonferroni).
+for independent errors of equal variance. Outliers are cut first. The probability for the curve is
+the smallest one times the number of tests (Bonferroni).
 
 Source: notes, §15.
 """
@@ -27,28 +27,28 @@ ROUNDING: Final = 1e-11
 """Scatter over the largest force that is rounding error."""
 # Reversals below this part of the range are noise of the displacement.
 _REVERSAL: Final = 0.05
-# Huber's weights, and the cut, over the standard deviation by the median: 95 % as efficient as
-# least squares for normal errors, and beyond 3 in 0.3 % of them.
+# Huber's threshold and the cut, over the standard deviation from the median: 95 % as efficient as
+# least squares for normal errors, of which 0.3 % exceed the cut; and the number of iterations.
 _HUBER, _CUT, _STEPS = 1.5, 3.0, 6
-# Standard deviation over the median of the absolute values, of normal errors.
+# Standard deviation over the median of the absolute values, for normal errors.
 _BY_MEDIAN: Final = 1.4826
 # Residuals over the step of rounded forces: below the first they show the rounding alone, below the
 # second their size varies with it.
 _ROUNDED, _STEPPED = 0.6, 2.0
-# Most polynomials of the depth, of each branch, and of the size of the residuals.
+# Maximum numbers of polynomials of the depth, of each branch, and of the size of the residuals.
 _DEPTH, _BRANCH, _SCATTER = 8, 4, 3
-# Singular value, over the largest, of regressors that the parameters or each other contain.
+# Relative size below which a regressor depends linearly on the parameters or on other regressors.
 _CONTAINED: Final = 1e-6
-# Most polynomials of the time.
+# Maximum number of polynomials of the time.
 _TIME: Final = 4
-# Warnings where the causes of two need not be told apart.
+# More general warning in place of one whose cause a caller does not distinguish.
 _GENERAL: Final = {"two_branches": "misfit", "drift": "correlated_noise"}
 # Fewest points of a branch.
 _FEWEST: Final = 3
 
 
 def directions(x: Array) -> Array:
-    """Return 1 where a displacement rises and -1 where it falls, turning points with the former.
+    """Return 1 where a displacement rises and -1 where it falls; turning points end a branch.
 
     Reversals below 5 % of the range are noise.
     """
@@ -116,8 +116,8 @@ def judged(
 ) -> tuple[float, tuple[Notice, ...]]:
     """Return the joint probability of all tests, and the warning that residuals are not noise.
 
-    Parameters: the result of `misfit`; causes by the warning, of which the more general one holds
-    where there is no other; a remedy of a misfit.
+    Parameters: the result of `misfit`; causes by warning code, of which `_GENERAL` replaces missing
+    ones; a remedy of a misfit.
     """
     code = min(found, key=lambda each: found[each], default="misfit")
     joint = min(1.0, len(found) * found[code]) if found else 1.0
@@ -134,7 +134,7 @@ def judged(
 
 
 def _prepared(q: Array, residual: Array, force: Array) -> tuple[Array, Array, float]:
-    """Return residuals of a robust fit, those cut, and the step of rounding.
+    """Return the residuals of a robust fit, the cut residuals, and the step of rounding.
 
     The robust fit is linear about the least squares: another minimum would change the sizes.
     """

@@ -1,7 +1,7 @@
 """Names and units of the columns of a file.
 
-Nothing is guessed: a column is that of a quantity if its unit or its name says so, or if it is the
-only one left of two. What is not understood is an error that names the line and the remedy.
+Nothing is guessed: the unit or the name of a column decides its quantity, or it is the only column
+left of two. An unclear heading is an error that names the line and the remedy.
 """
 
 import json
@@ -16,10 +16,10 @@ from mdr_core.errors import InputError
 _WORDS: Final = json.loads(files("mdr_core").joinpath("table_words.json").read_text("utf-8"))
 # Prefix -> power of ten; unit -> quantity, size in SI units, and whether it takes a prefix.
 _PREFIXES, _UNITS = _WORDS["prefixes"], _WORDS["units"]
-# Names of each quantity, and words beside a name that leave its meaning.
+# Names of each quantity, and words beside a name that do not change its meaning.
 _NAMES, _NEUTRAL = _WORDS["names"], frozenset(_WORDS["neutral"])
 # Parts of names of depths that fall towards the sample, and of positions of a cantilever, which are
-# no depths before its deflection is subtracted.
+# not depths until its deflection is subtracted.
 _FALLING, _DEFLECTED = _WORDS["falling"], _WORDS["deflected"]
 # Words of each kind of segment; of several the first kind is meant, as in "hold at peak load".
 _SEGMENTS: Final = {kind: frozenset(words) for kind, words in _WORDS["segments"].items()}
@@ -36,9 +36,9 @@ _MULTIPLIER: Final = (
 )
 # Words before the names, or the units, of columns in a comment.
 _LABEL: Final = r"(?i)^(fancyNames|columns|headings?|units?)\s*[:=]\s*"
-# Characters of the longest heading: tables of instruments have some hundred.
+# Characters of the longest heading: tables of instruments have a few hundred.
 _LONGEST: Final = 4_000
-# Argument of a function behind its name: A(h), A(hc), f(r).
+# Argument of a function after its name: A(h), A(hc), f(r).
 _ARGUMENT: Final = r"(?<=\w) ?\((h|h_?c|r)\)"
 _SQUARE: Final = r"(²|\^2|\*\*2|2)$"
 # A number before a unit, such as 10^-6, 1e-6 or x10-6.
@@ -98,7 +98,7 @@ def refuse(line: int, detail: str) -> InputError:
 
 
 def cells_of(text: str, separator: str) -> list[str]:
-    """Return the cells of a line; a blank separates as a comma and a blank do."""
+    """Return the cells of a line; a separating blank may have a comma before it."""
     if separator == " ":
         return text.replace(", ", " ").split()
     return [cell.strip() for cell in text.split(separator)]
@@ -158,7 +158,7 @@ def titles_of(
 def _title(cell: str, line: int) -> Title:
     """Return a title: `r [mm]`, `r (10^-6 m)`, `r/mm`, `r, mm`, `load_micro_N` or `A(h) [mm²]`."""
     cell = re.sub(_ARGUMENT, "", cell)
-    # Brackets hold the unit, or words that leave the meaning: Height (measured) [nm].
+    # Brackets hold the unit, or words that do not change the meaning: Height (measured) [nm].
     brackets = re.findall(r"([\[({]([^\])}]*)[\])}]?)", cell)
     for bracket, inside in brackets:
         if unit := unit_of(inside):
@@ -169,7 +169,7 @@ def _title(cell: str, line: int) -> Title:
                 cell.replace(bracket, "").strip(), None, f"the unit {inside.strip()}", line
             )
     parts = re.split(r"(?<=[^\W\d])[ _]|[/,]", cell)
-    # The unit is what follows the name, or a word within it: Defl_nN_Ex.
+    # The unit follows the name, or is a word within it: Defl_nN_Ex.
     ends = [(i, len(parts)) for i in range(1, len(parts))]
     ends += [(i, i + 1) for i in range(1, len(parts)) if len(parts[i]) > 1]
     for i, end in ends:
@@ -180,7 +180,7 @@ def _title(cell: str, line: int) -> Title:
 
 
 def _rank(title: Title, quantity: str) -> int | None:
-    """Place of a column among those of a quantity, last by its unit alone; None if none."""
+    """Rank of a column for a quantity, last if only its unit fits; None if it does not fit."""
     order, measure = _NAMES[quantity], title.unit and title.unit[0]
     # A known unit decides, whatever the name.
     if measure not in {None, MEASURES[quantity]} and (measure, quantity) != ("area", "radius"):
@@ -191,14 +191,14 @@ def _rank(title: Title, quantity: str) -> int | None:
     for name in ("".join(title.words), *words[: len(words) == 1]):
         if name in order:
             return order.index(name)
-    # A length may be a radius or a height; an area is that of a tip.
+    # A length may be a radius or a height; an area is the area function of a tip.
     return len(order) if measure and (quantity not in PROFILE or measure == "area") else None
 
 
 def places_of(
     titles: Sequence[Title], numeric: Sequence[int], kind: Sequence[str], line: int
 ) -> list[list[int]]:
-    """Return the indices of the columns of each quantity: one, or those of loading and unloading.
+    """Return the indices of the columns of each quantity: one, or loading and unloading.
 
     Parameters
     ----------
@@ -209,7 +209,7 @@ def places_of(
 
     Raises
     ------
-    ColumnsError : columns that the titles do not tell apart; it asks for their names.
+    ColumnsError : columns that the titles do not distinguish; it requests their names.
     """
     if len(numeric) == 2 and kind == PROFILE and not any(titles[i].name for i in numeric):
         return [[i] for i in numeric]
@@ -231,7 +231,7 @@ def places_of(
             detail = f"{both} may each be the {quantity}: name one of them {quantity}"
             raise ColumnsError(line, detail, names)
     if len(numeric) == 2 and [] in places:
-        # The one that is known decides the other.
+        # If one of two columns is known, the other one is the missing quantity.
         left = [i for i in numeric if [i] not in places and not titles[i].unit]
         places[places.index([])] = left[:1]
     if [] in places:
@@ -261,7 +261,7 @@ def segments_of(columns: Sequence[list[str]]) -> list[str] | None:
     """
     for cells in columns:
         known = {cell: segment_of(cell) for cell in {*cells} - {""}}
-        # A column of one word is no column of segments.
+        # A column with a single word is not a column of segments.
         if None not in (kinds := set(known.values())) and len(kinds) > 1 and cells[0]:
             for row in range(1, len(cells)):
                 cells[row] = cells[row] or cells[row - 1]

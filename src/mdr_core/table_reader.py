@@ -32,13 +32,13 @@ from mdr_core.validation import require_type
 _AREAS: Final = {"area", "a", "section", "areas", "fläche", "kontaktfläche", "aire"}
 _POINT: Final = re.compile(r"(?ai)[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?")
 _COMMA: Final = re.compile(r"(?ai)[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?")
-# Separator of columns, and the form of a number. Blanks, or a comma and a blank, separate numbers
-# with a decimal comma before commas separate columns: `0,5 1,2` holds two numbers.
+# Separator of columns, and the form of a number, in the order of trial. Numbers with a decimal
+# comma come before columns separated by commas: `0,5 1,2` holds two numbers.
 _DIALECTS: Final = (
     *((separator, form) for separator in "\t;" for form in (_POINT, _COMMA)),
     *((" ", _COMMA), (",", _POINT), (" ", _POINT)),
 )
-# Signs of one meaning, marks of comments, comments behind numbers, and repeated blanks.
+# Variants of a sign, marks of comments, comments after numbers, and repeated blanks.
 _REPLACED: Final = (
     ("\r\n?", "\n"),
     ("−", "-"),
@@ -51,11 +51,11 @@ _REPLACED: Final = (
 # Any number, with whatever decimal sign.
 _NUMBERLIKE: Final = re.compile(r"(?ai)[-+]?[\d.,]*\d[.,]?([ed][-+]?\d+)?")
 _DECIMAL: Final = str.maketrans(",dD", ".ee")
-# Quoted number with commas before its thousands, beside which 3,000 in quotes is not 3.
+# Quoted number with commas between thousands: in its column "3,000" is 3000, not 3.
 _THOUSANDS: Final = re.compile(r'" *[-+]?\d{1,3}(,\d{3})*,\d{3}(\.\d*|,\d{3}) *"')
 # Comment that names the segment of the rows beneath it, in files of JPK.
 _SEGMENT: Final = re.compile(r"segment: *(\w+)$")
-# Bytes of the longest file, some 10^5 points: more take seconds.
+# Bytes of the longest file, about 10^5 points; longer files take seconds.
 _LARGEST: Final = 4_000_000
 # Height over radius, as written, above which columns without names may be h and A(h): A(h)/h of a
 # tip in nanometres is in the hundreds, f/r of a ball in micrometres over millimetres is 10.
@@ -154,8 +154,8 @@ def read_curve(file: str | Path, units: Sequence[str | None] = (None, None)) -> 
 
     Parameters
     ----------
-    file : see `read_table`; columns of depth and force, or distance and load. The depth of a
-        column of tip-sample separations is their negative. Two columns of each quantity, on
+    file : see `read_table`; columns of depth and force, or distance and load. Tip-sample
+        separations become depths by a change of sign. Two columns of each quantity, on
         approach and on retraction, are two segments in succession.
     units : units of depth and force, where no heading names them.
 
@@ -221,7 +221,7 @@ def _decoded(content: bytes) -> str:
     try:
         return content.decode("utf-16" if wide else "utf-8-sig")
     except UnicodeDecodeError:
-        # As older instruments write it.
+        # Older instruments write this encoding.
         return content.decode("cp1252", errors="replace")
 
 
@@ -273,7 +273,7 @@ def _lines(text: str) -> list[tuple[int, bool, str]]:
 
 
 def _numbers(cells: Sequence[str], form: re.Pattern[str]) -> list[int]:
-    """Return the indices of two or more numbers; none beside one with another decimal sign."""
+    """Return the indices of at least two numbers; none if a number has another decimal sign."""
     found = [i for i, cell in enumerate(cells) if form.fullmatch(cell)]
     if len(found) < len(cells) and any(
         _NUMBERLIKE.fullmatch(cell) for i, cell in enumerate(cells) if i not in found
@@ -292,7 +292,7 @@ def _rows(
 
     Parameters
     ----------
-    columns : indices of the numbers in each row; empty for those in the first row.
+    columns : indices of the numbers in each row; empty to take them from the first row.
     """
     rows: list[_Row] = []
     heading, segment = [], ""
@@ -384,7 +384,7 @@ def _require_profile(table: ParsedFile) -> None:
 
 
 def _is_area(title: Title) -> bool:
-    """Return whether a column is an area, by its name or its unit; r² in mm² is none."""
+    """Return whether a column is an area, by its name or its unit; r² in mm² is not."""
     measured = title.unit is not None and title.unit[0] == "area"
     is_radius = title.name.lower().startswith(("r", "x"))
     return not _AREAS.isdisjoint(title.words) or (measured and not is_radius)

@@ -1,4 +1,4 @@
-"""Values up to which effects that the model leaves out change a result by no more than a tolerance.
+"""Limits within which neglected effects change a result by no more than a tolerance.
 
 Each follows from the contact radius a, g'(a) and F_N(a) to first order in the tolerance t:
 
@@ -55,7 +55,7 @@ class Threshold(NamedTuple):
 def of_contact(contact: NormalContact, tolerance: float) -> tuple[Threshold, ...]:
     """Return the limits of a contact of a half-space without adhesion, where they are known.
 
-    Yield is known of paraboloids, and the shape of spheres. The thickness is that of a body bonded
+    Yield is known for paraboloids, and the shape for spheres. The thickness is for a body bonded
     to a rigid base, of Poisson's ratio 0.3 where it is unknown.
 
     Parameters
@@ -65,7 +65,7 @@ def of_contact(contact: NormalContact, tolerance: float) -> tuple[Threshold, ...
 
     Raises
     ------
-    InputError : another tolerance, or another contact.
+    InputError : a tolerance out of range, or a contact from another function.
 
     Examples
     --------
@@ -121,7 +121,7 @@ def _shear_below(nu: float) -> float:
 
 @lru_cache(maxsize=64)
 def _like_paraboloid(tolerance: float) -> float:
-    """a/R at which the depth of a sphere under its force differs from that of a paraboloid [1]."""
+    """a/R at which the depths of a sphere and a paraboloid differ under the same force [1]."""
 
     def excess(x: float) -> float:
         depth = x * atanh(x)

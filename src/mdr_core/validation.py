@@ -158,7 +158,7 @@ def require_single_positive(path: tuple[str | int, ...], value: float) -> None:
 
 
 def require_whole(path: tuple[str | int, ...], value: object) -> None:
-    """Raise InputError at the path unless the value is a whole number, as of points or cycles."""
+    """Raise InputError at the path unless the value is a whole number."""
     if (
         isinstance(value, bool)
         or not isinstance(value, int | np.integer)
@@ -226,8 +226,8 @@ def common_shape(
 def require_representable(path: tuple[str | int, ...], used: Flags, *results: Array) -> None:
     """Raise InputError at the first load whose results are not representable as doubles.
 
-    `path` is that of the load, `used` are the loads that are not zero, under which the results are
-    positive.
+    `path` leads to the load; `used` marks the loads that are not zero, for which the results must
+    be positive.
     """
     bad = np.zeros(used.shape, dtype=bool)
     for values in results:

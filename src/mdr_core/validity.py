@@ -52,10 +52,10 @@ _LIMITS: Final = {
     # |beta|, by which normal and tangential contact are coupled.
     "elastic_similarity": 0.05,
 }
-# Room for rounding: a cone of slope 0.1 on incompressible bodies has an error of one per cent.
+# Margin for rounding: a cone of slope 0.1 on incompressible bodies has an error of one per cent.
 _ROOM: Final = 1 + 1e-9
-# Relative change of forces at a given displacement by transverse slip, and of displacements under
-# forces up to 0.998 of full slip, over (nu/(4 - 2 nu))^2. Source: notes, §8.
+# Relative change, due to transverse slip, of forces at a given displacement and of displacements
+# under forces up to 0.998 of full slip, over (nu/(4 - 2 nu))^2. Source: notes, §8.
 _TRANSVERSE: Final = 0.2
 # Maximum number of radii in a warning, so that it stays one sentence.
 _LISTED: Final = 5
@@ -118,7 +118,7 @@ class ContactResults(Results):
 
     @property
     def slips_from(self) -> Parameter:
-        """Least radius with slip in each case [length]; infinite without."""
+        """Smallest radius with slip in each case [length]; infinite without."""
         return np.inf
 
     @property
@@ -164,7 +164,7 @@ class ResultsOverLoads(ContactResults):
 
 
 def _under_a_force(contact: LoadedContact, error: Array | None) -> Array | None:
-    """Add the error by a body's thickness to an error by the size of round bodies, up to 1.
+    """Add the error due to a body's thickness to that due to the size of round bodies, up to 1.
 
     None where there is neither, and under a flat punch, whose radius is given.
     """
@@ -191,12 +191,12 @@ def notices(findings: Iterable[Finding]) -> list[Notice]:
 
 
 def model_error(contact: SolvedContact) -> Array:
-    """Return the estimated relative error of depth, force and displacements by the model [1].
+    """Return the relative error of depth, force and displacements due to the model [1].
 
     Estimate, not a bound, for each load; 1 stands for 100 % and more. It includes the half-space
     (`half_space`, `thin_body`), and with friction the neglected coupling and the transverse slip.
     A flat punch that sticks to a half-space has artanh(beta)/beta - 1, about beta^2/3, more force;
-    slip across the load, of the relative size nu/(4 - 2 nu), acts to second order. Local stresses
+    transverse slip, of relative size nu/(4 - 2 nu), acts to second order. Local stresses
     may differ by beta, and displacements under a force next to full slip by more.
 
     Source: hay; spence; notes, §8.
@@ -266,7 +266,7 @@ def smoothed(contact: LoadedContact, profile: Tabulated) -> Finding:
 
 
 def tip(contact: LoadedContact, profile: Tabulated) -> Finding:
-    """Return `tip`: tables whose points do not tell a sharp tip from a smooth one."""
+    """Return `tip`: tables whose points do not distinguish a sharp tip from a smooth one."""
     rival = profile.fit.rival
     other = "smooth" if profile.tip_pressure > 0 else "sharp, with infinite pressure on the axis"
     text = (
@@ -280,10 +280,10 @@ def of_normal_contact(contact: LoadedContact, slips_from: Parameter) -> list[Fin
     """Return `half_space`, `thin_body`, `large_strain` and `plastic`.
 
     `half_space`: the estimated error of the half-space approximation exceeds one per cent. It is
-    of first order in a/R by the finite size of round bodies, and in the slope by the neglected
-    radial displacement, and of second order by the geometry; the side wall of an elastic punch and
-    the radial displacement of a layer add to it. `thin_body`: the contact radius exceeds a tenth of
-    the given thickness of the body.
+    of first order in a/R due to the finite size of round bodies, and in the slope due to the
+    neglected radial displacement, and of second order due to the geometry; the side wall of an
+    elastic punch and the radial displacement of a layer add to it. `thin_body`: the contact radius
+    exceeds a tenth of the given thickness of the body.
     `large_strain`: the pressure of round bodies exceeds a tenth of E*. `plastic`: the deviatoric
     stress is infinite somewhere, which no material can bear.
 
@@ -444,7 +444,7 @@ def infinite_deviator(
 
 
 def listed(names: Sequence[str]) -> str:
-    """Return ascending radii as text, of many the first, the last and their number."""
+    """Return ascending radii as text; many as the first, the last and their number."""
     many = len(names) > _LISTED
     return f"{names[0]} to {names[-1]} ({len(names)} radii)" if many else ", ".join(names)
 

@@ -65,8 +65,8 @@ def create_app() -> FastAPI:
     app.state.transfers = middleware.Transfers(SETTINGS.max_transfer_bytes)
     app.state.compute = ComputePool(SETTINGS)
     middleware.install(app)
-    # The framework keeps the document. To write it takes a quarter of a second, for which no
-    # request waits at the start.
+    # The framework caches the document. It takes a quarter of a second to build, so build it before
+    # the first request.
     openapi.extend(app.openapi())
     app.state.openapi = orjson.dumps(app.openapi())
     app.mount("/docs/swagger", explorer.Pages(packages=[("fastapi_swagger", "resources")]))

@@ -3,9 +3,9 @@
 Computations that are longer than a round trip run in compute processes: a thread would hold the
 global interpreter lock (GIL), and could not be terminated. They wait for up to `queue_seconds`,
 then run for up to `budget_seconds`; a single limit would terminate computations that have mainly
-waited. Computations of one client wait in their order. Among several clients the next is the one
-that occupies the fewest processes. A client that occupies several processes gives up the last of
-them while another client waits.
+waited. Computations of one client start in the order of arrival. Among several clients the next is
+the one that occupies the fewest processes. A client that occupies several processes gives up the
+last of them while another client waits.
 
 Calls and outcomes are pickled, and preceded by their length.
 """

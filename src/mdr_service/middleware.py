@@ -254,7 +254,7 @@ async def _http_exception(request: Request, error: HTTPException) -> Response:
     if error.status_code == problems.NOT_FOUND.status:
         return problem_response(ServiceError(problems.NOT_FOUND, "GET /docs lists the endpoints"))
     if error.status_code == problems.METHOD_NOT_ALLOWED.status:
-        # Files have no route; the framework names their methods.
+        # Static files have no route; the framework returns their methods.
         allowed = _allowed(request) or (error.headers or {})["Allow"]
         detail = f"the method {request.method[: problems.MAX_NAME]} is not allowed: use {allowed}"
         failure = ServiceError(problems.METHOD_NOT_ALLOWED, detail)

@@ -27,8 +27,8 @@ MAX_HEADER_BYTES: Final = 16_384
 BACKLOG: Final = 128
 """Maximum number of connections that wait in the kernel; the event loop accepts as many in one
 turn."""
-# Number of descriptors kept free: for files and compute processes, and for the connections of four
-# turns of the event loop, the delay between accepting a connection and closing another one for it.
+# Number of descriptors kept free: for files and compute processes, and for the connections that are
+# accepted in the four turns of the event loop until others are closed for them.
 _FREE_DESCRIPTORS: Final = 64 + 4 * BACKLOG
 LINGER_SECONDS: Final = 1.0
 """Time for a rejected client to finish sending and read the response."""

@@ -45,7 +45,7 @@ def _number(text: str, advice: str = "") -> float:
 
 
 def _load(text: str) -> float | list[float]:
-    """Return a number, or the numbers of a list, unless its commas can be those of a number."""
+    """Return a number, or the numbers of a list if its commas cannot belong to one number."""
     if "," not in text or _ONE_NUMBER.fullmatch(text):
         return _number(text, _SEVERAL)
     return [_number(each.strip(), _SEVERAL) for each in text.split(",")]
@@ -57,7 +57,7 @@ def _whole(text: str) -> int:
     return int(text)
 
 
-# A schema that admits null keeps Swagger UI from checking the text, since it takes no exponents.
+# A schema that admits null keeps Swagger UI, which rejects exponents, from checking the text.
 _Number = Annotated[float, BeforeValidator(_number)] | None
 # Type and schema of a parameter that can be a list, or a range.
 _Load = Annotated[Any, BeforeValidator(_load), WithJsonSchema({"type": "number"})] | None
@@ -69,7 +69,7 @@ NUMBERS: Final = (_Number, _Load, _Whole, _Length)
 _TYPES: Final[Mapping[str, Any]] = {"number": _Number, "integer": _Whole}
 # Parameters that are words.
 _WORDS: Final = frozenset({"kind", "base", "held", "segment", "drift", "quantities", "fit"})
-# Groups whose parameters carry their name.
+# Groups whose name is a prefix of their parameters.
 _LAYERS: Final = frozenset({"material.layer", "layer"})
 _OF_BODIES: Final = frozenset({"material.bodies.#", "profile.radii"})
 _LOADS: Final = frozenset(contacts.LOADS)
@@ -162,7 +162,7 @@ class Parameters(ResponseParameters):
         for part in (start, stop, "n"):
             if part not in self.model_fields_set:
                 raise InputError((part,), "is required for a range")
-        # Numbers between ends out of bounds can overflow; validation then rejects the ends.
+        # If the ends are out of bounds, the spacing can overflow; validation then rejects them.
         with np.errstate(all="ignore"):
             spaced = _SPACINGS[self.scale or "linear"](given.pop(start), given.pop(stop), self.n)
         given[name] = spaced.tolist()
@@ -180,8 +180,8 @@ class Parameters(ResponseParameters):
     def _parameter(self, place: str) -> str:
         """Return the parameter that corresponds to a place in the request.
 
-        A group of fields corresponds to the first parameter that is given or, without any, that
-        exists; a range to the end at fault. Parameters of the response keep their names.
+        For a group of fields it is the first parameter given or, if none is given, the first that
+        exists; for a range, the end at fault. Parameters of the response keep their names.
         """
         inside = [
             name

@@ -28,7 +28,7 @@ _BODY: Final = 'an object of youngs_modulus and poissons_ratio, or "rigid"'
 _BODIES: Final = f"bodies (two, each {_BODY})"
 _PROFILE: Final = f"an object of kind, one of {_KINDS}, and its fields"
 _PLAIN: Final = "it is not JSON in plain UTF-8 (no compression, no byte order mark)"
-# Sentences by the type of the error, and by its type and field; names in braces are those of its
+# Sentences by the type of the error, or by its type and field; names in braces are members of its
 # context.
 _SENTENCES: Final[Mapping[str | tuple[str, str], str]] = {
     "bool_type": "must be true or false, without quotes",

@@ -59,7 +59,7 @@ class Table:
             if len(set(names)) < len(names):
                 raise UsageError(f"{path} has two columns {max(names, key=names.count)}")
             if is_parquet:
-                # Read-ahead would keep everything that was read in memory to the end.
+                # Read-ahead would hold all data read so far in memory until the end.
                 options = ds.ParquetFragmentScanOptions(pre_buffer=False)
                 form: ds.FileFormat = ds.ParquetFileFormat(default_fragment_scan_options=options)
                 self._data = ds.dataset(path, format=form)

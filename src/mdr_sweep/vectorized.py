@@ -54,7 +54,7 @@ def solve(spec: Spec, batch: pa.RecordBatch) -> pa.RecordBatch:
         solved[row] = WARNING in case
         texts = [str(column.cells[row]) for column in columns.values() if column.is_unreadable(row)]
         if texts:
-            # The column of the result has no place for them.
+            # A column of numbers cannot hold these texts.
             case[ERROR] += "; read " + ", ".join(map(repr, texts))
         for name, value in case.items():
             results[name][row] = value
@@ -165,7 +165,7 @@ def _solve_alone(spec: Spec, given: Mapping[str, Any]) -> dict[str, Any]:
             request = _validated(spec, given)
             source = query.solve(request)
             result = query.result(request, source)
-            # The last: of several numbers of cycles only the end of wear has a place in the row.
+            # A row has one value: of several numbers of cycles, the last.
             values = {
                 name: result[name][-1]
                 if name in result

@@ -1,6 +1,6 @@
 """Facts of the interface `/v1` on which clients depend, one line each.
 
-`python -m tests.contract.interface` writes those of the committed `openapi.json`, at a release:
+`python -m tests.contract.interface` writes the facts of the committed `openapi.json` at a release:
 
     POST /v1/normal                        an operation
     POST /v1/normal 200 text/csv           a format of its response
@@ -102,7 +102,7 @@ def broken(released: set[str], document: dict[str, Any]) -> list[str]:
     now, requests = facts(document), used_in_requests(document)
 
     def is_demand(fact: str) -> bool:
-        """A requirement of a request, whose end breaks no client."""
+        """A requirement of a request, whose removal breaks no client."""
         owner = fact.partition(" ")[0].partition(".")[0]
         return fact.endswith(IS_REQUIRED) and (" ?" in fact or owner in requests)
 

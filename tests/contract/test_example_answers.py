@@ -13,7 +13,7 @@ def test_every_query_has_an_example_response(client: Client) -> None:
     document = client.get("/openapi.json").json()
     for path in document["paths"].values():
         for operation in path.values():
-            # A file, the input of `table`, is no JSON.
+            # A file, the input of `table`, is not JSON.
             is_file = operation["operationId"] == "table"
             if {"contact", "wear", "batch"} & set(operation["tags"]) and not is_file:
                 content = operation["responses"]["200"]["content"]["application/json"]

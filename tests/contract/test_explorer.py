@@ -453,7 +453,7 @@ def test_drift_of_a_hold_is_subtracted_on_request(visit: Visit, tmp_path: Path) 
 def mindlin_loop(rig: float, part: float = 1.5) -> tuple[np.ndarray, np.ndarray]:
     """Return a loop of a ball of 10 mm under 10 N, for E* = 2 GPa, G* = 1.6 GPa and mu = 0.3.
 
-    The amplitude of the contact is a `part` of that of full slip.
+    The amplitude of the contact is a `part` of the amplitude of full slip.
     """
     depth = (7.5 / (2e9 * 0.1)) ** (2 / 3)
     whole = 0.3 * 2 / 1.6 * depth
@@ -654,7 +654,7 @@ def test_stresses_beneath_a_singular_edge_keep_their_colours(visit: Visit) -> No
 
 
 def test_narrow_worn_annulus_fills_its_chart(visit: Visit) -> None:
-    """After these cycles, not in the limit, from which the annulus of Eq. (5.90) differs."""
+    """The chart shows the annulus after these cycles, which differs from the limit (5.90)."""
     amplitude = "&mu=0.6&oscillation=tangential_displacement&amplitude=1e-8"
     visit.open(f"?tab=wear&load=20{amplitude}")
     chart = visit.page.locator("figure", has_text="Worn depth").locator(".plot")

@@ -83,7 +83,7 @@ def output_of(client: Client, command: str) -> str:
 
 
 def shell(command: str, folder: Path | None = None) -> str:
-    """Return the output of a command line in which `mdr` is that of this environment."""
+    """Return the output of a command line in which `mdr` comes from this environment."""
     path = {"PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])}
     done = subprocess.run(
         ["sh", "-c", command], cwd=folder, env=os.environ | path, capture_output=True, check=True

@@ -69,7 +69,7 @@ def test_history_excludes_loads(client: Client) -> None:
 
 
 def test_requests_of_the_page(client: Client) -> None:
-    """Their results, as documented in docs/yield.md."""
+    """The results equal the numbers in docs/yield.md."""
     ball, punch, fretting = (client.post(PATH, query).json() for query in REQUESTS)
     p0 = 1.370879e9
     assert ball["yield_onset_force"]["tresca"][0] == pytest.approx(122.3, rel=1e-3, abs=0)

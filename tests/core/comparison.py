@@ -55,9 +55,9 @@ def contact_of(case: Mapping[str, Any]) -> NormalContact:
 def bound_of(case: Mapping[str, Any], bound: float) -> float:
     """Return the bound of a case, wider next to an edge that a contact radius hardly resolves.
 
-    Within 1e-6 of the edge of a cap it is 1e-9. Within 1e-9 of it, and at the tips of cones steeper
-    than 100, the estimate is the only bound: it may not be below the error. So it is within 1e-6 of
-    the equator of a spheroid.
+    Within 1e-6 of the edge of a cap it is 1e-9. The estimate is the only bound, and may not be
+    below the error, within 1e-9 of the edge of a cap, within 1e-6 of the equator of a spheroid, and
+    at the tips of cones steeper than 100.
     """
     kind, regime, edge = case["profile"]["kind"], case["tags"]["regime"], "b(1+1e-9)"
     if kind == "capped_paraboloid":
@@ -109,7 +109,7 @@ def wrong(
     value, expected : the result and its stored value.
     bound : largest relative error of the method.
     allowed : allowance for the rounding error of the inputs.
-    estimate : estimate of the relative error, without that of the inputs.
+    estimate : estimate of the relative error, without the errors of the inputs.
     """
     error = relative_error(value, expected)
     if not error <= bound + allowed:

@@ -53,7 +53,7 @@ def scene(draw: Draw, kind: str) -> layer_reference.LayerContact:
 
 
 def errors(scene: layer_reference.LayerContact, draw: Draw) -> Iterator[Error]:
-    """Errors of a contact at a radius, depth and force, of its pressure, and with adhesion."""
+    """Errors of a contact under each of its loads, of its pressure, and of adhesion."""
     profile = profile_from(scene.profile)
     sample = Layer(scene.thickness, scene.base, scene.nu, scene.share)
     material, flat = Material(1.0, layer=sample), profile.is_flat_punch
@@ -85,7 +85,7 @@ def _error(found: Any, name: str, value: Any, truth: Any) -> Error:
 
 
 def worst(seed: int, kind: str) -> tuple[Error, layer_reference.LayerContact]:
-    """Largest error of a random scene over its limit, the lesser of the bound and the stated."""
+    """Largest error of a random case over its limit, the smaller of bound and stated error."""
     draw = random.Random(seed)
     found = scene(draw, kind)
     return max(errors(found, draw), key=lambda each: each.error / min(each.stated, BOUND)), found

@@ -344,7 +344,7 @@ def test_tip_sharper_than_a_root_has_no_contact_without_load(control: str) -> No
 
 
 def test_two_minima_give_the_lower_pull_off() -> None:
-    """A blunt cap holds at its edge; the body beyond it has a minimum of its own."""
+    """The force has one minimum at the edge of the blunt cap, and another on the body beyond."""
     profile, two = mdr.TruncatedCone(1.0, 0.1), 0
     for w in np.geomspace(1e-4, 1e-1, 30):
         contact = adhesion.solve(profile, 1.0, w, normal_force=100.0)

@@ -35,7 +35,7 @@ NAMES = (
 
 
 def in_turn(order: int) -> tuple[Array, Array]:
-    """Slow cycles, whose steps are far smaller than what they add to."""
+    """Slow cycles, whose steps are far smaller than the loads that they change."""
     phase = np.linspace(0.0, 9.0, 200)
     d = DEPTH * (0.7 + 0.25 * np.sin(phase * order))
     return d, 0.4 * FULL_SLIP * np.sin(2 * phase)

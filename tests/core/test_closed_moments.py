@@ -1,4 +1,4 @@
-"""Moments keep their digits beside the equator of a steep tip, and where g stops rising."""
+"""Moments are accurate beside the equator of a steep tip, and where g stops rising."""
 
 import mpmath
 import numpy as np

@@ -158,7 +158,7 @@ def test_values_of_each_contact_are_checked(given: tuple, message: str) -> None:
 
 
 def test_depths_may_be_changed_in_place_for_the_next_step() -> None:
-    """The state keeps its own depth, and F_N = (4/3) E* sqrt(R) d^(3/2) follows the next one."""
+    """A state keeps its depth, and F_N = (4/3) E* sqrt(R) d^(3/2) holds for the changed depth."""
     states = history.unloaded_many(Paraboloid([1.0, 4.0]), 1.0, 1.0, 0.5)
     for total in (0.25, 0.5):
         depth = states.indentation_depth

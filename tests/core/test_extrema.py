@@ -1,4 +1,4 @@
-"""The maximum of a field is not below any of its values, and lies where it is taken."""
+"""The maximum of a field is not below any of its values, and equals the value at its place."""
 
 from math import acosh, cosh, hypot, inf, pi, sqrt
 from typing import Any

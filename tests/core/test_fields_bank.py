@@ -1,4 +1,4 @@
-"""Traction, slip, displacement and foundation loads meet the stored references.
+"""Traction, slip, displacement and foundation loads agree with the stored references.
 
 The radii come as close as 1e-9 to the axis, the break, the stick radius and the contact edge, on
 both sides.

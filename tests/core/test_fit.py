@@ -127,7 +127,7 @@ NOISY = {
 
 
 def off_by(shape: str, noise: float, seed: int, curves: int) -> Array:
-    """Errors over their standard deviations, for noise in parts of the pull-off force."""
+    """Errors over their standard deviations, for noise given over the pull-off force."""
     radii, pull_off, lowest = NOISY[shape]
     depth, force = jkr(shape, radii)
     depth[:20] = np.linspace(3, 1.6, 20) * lowest + D_0

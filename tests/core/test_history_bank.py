@@ -1,4 +1,4 @@
-"""Cycles and random paths meet the stored references, under either kind of control."""
+"""Cycles and random paths agree with the stored references, under either kind of control."""
 
 from __future__ import annotations
 
@@ -59,9 +59,9 @@ def input_error(case: dict[str, Any], name: str, index: int) -> float:
 def full_slip_error(case: dict[str, Any], index: int, result: history.LoadHistory) -> float:
     """Error of the dissipated energy where rounding may move the amplitude past full slip.
 
-    Beyond the onset of full slip the energy grows by 4 mu F_N du. That is steep next to a flat,
-    where the slip annulus before the onset is narrow and dissipates little. The stored condition
-    number is that of partial slip.
+    Beyond the onset of full slip the energy grows by 4 mu F_N du. This growth is steep next to a
+    flat, where the slip annulus before the onset is narrow and dissipates little. The stored
+    condition number is for partial slip.
     """
     limit = case["friction_coefficient"] * float(np.max(result.normal_force))
     if case["tangential_control"] == "tangential_force" or not (

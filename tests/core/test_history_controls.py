@@ -126,7 +126,7 @@ def test_samples_decide_the_path_on_a_rough_table(controls: tuple[str, str], see
 @every_pair
 @every_number
 def test_samples_are_even_in_the_controls(controls: tuple[str, str], samples: int) -> None:
-    """Also of a step on which one control alone changes; the first one is straight."""
+    """This holds also if only one control changes; the first step is straight."""
     profile = Paraboloid(1.3)
     points = random_points(profile, controls, 5)
     path = solve(profile, **points, samples_per_step=samples)
@@ -165,7 +165,7 @@ def test_first_point_carries_a_tangential_force(name: str, ratio: float, samples
 
 @every_pair
 def test_state_after_the_first_point_does_not_depend_on_samples(controls: tuple[str, str]) -> None:
-    """It starts from the straight line of that point from zero load."""
+    """The first step is the straight line from zero load to its point."""
     profile = Paraboloid(1.3)
     first = {name: row[:1] for name, row in random_points(profile, controls, 6).items()}
     one, many = (solve(profile, **first, samples_per_step=number) for number in (1, 9))

@@ -200,7 +200,7 @@ def test_grid_includes_every_slip_front() -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_springs_that_never_slipped_after_normal_loading_have_no_slope(seed: int) -> None:
-    """Not even one by rounding: the stress of any slope is infinite at the tip of a cone."""
+    """Not even a slope due to rounding: its stress would be infinite at the tip of a cone."""
     rng = np.random.default_rng(seed)
     loads = rng.uniform(0.5, 1.0, 8)
     forces = 0.3 * MU * loads * rng.uniform(-1, 1, 8)

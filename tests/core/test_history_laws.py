@@ -50,7 +50,7 @@ def near(value: Any, absolute: float = 0.0, rel: float = 1e-12) -> Any:
 
 
 def controls(case: Case, path: list[tuple[float, float]]) -> tuple[Array, Array, float]:
-    """Depths, displacements, and the depth that both are fractions of."""
+    """Depths, displacements, and the depth to which both are scaled."""
     depth = float(at_radius(*case).indentation_depth)
     d, u = np.array(path).T
     return d * depth, u * SHIFT * depth, depth
@@ -126,7 +126,7 @@ def test_repeated_loop_closes_and_dissipates(case: Case, loop: list[tuple[float,
 
 
 def work(case: Case, d: Array, u: Array) -> tuple[Array, history.LoadHistory]:
-    """int F_x du up to each point, by Gauss-Lobatto on panels that cluster at kinks of F_x.
+    """int F_x du up to each point, by Gauss-Lobatto on panels that cluster at slope jumps of F_x.
 
     Additional points on a straight load step change nothing, so the rule's nodes are path points.
     """

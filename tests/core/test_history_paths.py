@@ -66,7 +66,7 @@ def test_state_matches_each_spring(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["sphere", "paraboloid", "truncated-cone"])
 def test_springs_bear_the_prescribed_forces(name: str) -> None:
-    """The exact history through depths and displacements of a path of forces has these forces."""
+    """The exact history for the computed depths and displacements has the prescribed forces."""
     random, profile = np.random.default_rng(8), profile_from(PROFILES[name])
     d = DEPTH * random.uniform(0.05, 1.0, 6)
     force = normal.solve(profile, MATERIAL.e_star, indentation_depth=d).normal_force

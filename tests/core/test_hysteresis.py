@@ -17,7 +17,7 @@ KINDS: list[Profile] = [Paraboloid(0.01), Cone(0.05), Power(40.0, 2.5), RoundedP
 
 
 def measured(profile: Profile, part: float, points: int = 81) -> tuple[normal.NormalContact, ...]:
-    """A contact under 10 N, and a loop whose amplitude is a part of that of full slip."""
+    """A contact under 10 N, and a loop with a part of the amplitude of full slip."""
     contact = normal.solve(profile, 2e9, normal_force=10.0)
     whole = MU * 2e9 / G_STAR * float(contact.indentation_depth)
     u = part * whole * np.sin(np.linspace(0.5, 4.5, points) * np.pi)

@@ -41,7 +41,7 @@ BONDED, SLIDING = "bonded", "frictionless"
 
 
 def _material(part: float, base: Any, nu: float | None, share: float = 1.0) -> Material:
-    """E* = 1, and a layer of the thickness 1/part."""
+    """E* = 1, and a layer of thickness 1/part."""
     return Material(1.0, layer=Layer(1 / part, base, nu, share))
 
 

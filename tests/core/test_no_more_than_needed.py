@@ -143,7 +143,7 @@ def test_slip_memory_is_followed_once_for_all_results(controls: str) -> None:
 
 @pytest.mark.parametrize("controls", PATHS)
 def test_tangential_force_of_a_history_needs_nothing_else(controls: str) -> None:
-    """Whatever its length: neither slip and energies nor the normal contact of each sample."""
+    """A history of any length computes neither energies nor the normal contact of each sample."""
     for steps in (10, 100_000):
         with (
             patch.object(tractions, "dissipation", never),

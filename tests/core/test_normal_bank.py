@@ -1,4 +1,4 @@
-"""Depth, force and radius meet the stored references under each of the controls."""
+"""Depth, force and radius agree with the stored references under each of the controls."""
 
 from __future__ import annotations
 

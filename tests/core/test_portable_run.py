@@ -1,4 +1,4 @@
-"""`make test-portable` computes as without AVX2, and without the compiled module."""
+"""`make test-portable` computes without AVX2 and without the compiled module."""
 
 import os
 import platform

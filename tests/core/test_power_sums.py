@@ -1,4 +1,4 @@
-"""Series with extreme exponents or cancelling terms keep the digits that they claim."""
+"""Series with extreme exponents or cancelling terms are as accurate as their estimates."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ def test_error_of_cancelling_terms(exponents: tuple[float, float, float]) -> Non
 
 @pytest.mark.every(3)
 def test_displacement_outside_a_series_of_small_and_large_powers() -> None:
-    """Exact at no more than the cost of its terms."""
+    """The result is exact, and takes no more evaluations than its terms."""
     a, radii = 1.0, np.array([1.0, 1.001, 1.5, 4.0])
     contact = normal.solve(series(*MIXED), 1.0, contact_radius=a)
     with counted() as count:

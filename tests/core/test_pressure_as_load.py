@@ -119,7 +119,7 @@ def test_pressure_of_a_blunt_cone_grows_with_the_logarithm_of_the_radius() -> No
 
 @pytest.mark.parametrize("slope", [0.3, 2.0, 30.0])
 def test_cone_far_beyond_its_spherical_tip_adds_a_logarithm(slope: float) -> None:
-    """The largest pressure grows by E* (slope/2) ln(a_2/a_1), up to a relative b/a."""
+    """The largest pressure grows by E* (slope/2) ln(a_2/a_1), with a relative error of b/a."""
     radii = [1e7, 1e9, 1e30]
     contact = normal.solve(SphericalTipCone(slope, 1.0), 1.0, contact_radius=radii)
     expected = slope / 2 * np.diff(np.log(radii))

@@ -1,4 +1,4 @@
-"""Pressure meets the stored references on the axis, at the edge and at breaks."""
+"""Pressure agrees with the stored references on the axis, at the edge and at breaks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""f, f', g and g' of every kind meet the stored references at and beside breaks."""
+"""f, f', g and g' of every kind agree with the stored references at and beside breaks."""
 
 from __future__ import annotations
 

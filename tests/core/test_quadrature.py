@@ -1,4 +1,4 @@
-"""Integrals of functions with poles next to the strip keep their digits."""
+"""Integrals of functions with poles next to the strip keep their accuracy."""
 
 from __future__ import annotations
 

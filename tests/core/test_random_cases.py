@@ -1,4 +1,4 @@
-"""Random contacts biased towards cancellation keep their digits."""
+"""Random contacts biased towards cancellation keep their accuracy."""
 
 from __future__ import annotations
 

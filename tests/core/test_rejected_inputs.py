@@ -103,7 +103,7 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
     (lambda: hit(normal_velocity=[]), ("normal_velocity",), "at least one value"),
     (lambda: hit(tangential_velocity=1e-165), ("tangential_velocity",), "change the units"),
     (lambda: Material(1.0, 0.0), ("material", "g_star"), "positive"),
-    # Numbers beneath a mask are no input.
+    # Numbers beneath a mask are not input.
     (normal_contact(Cone(1.0), normal_force=MASKED), ("load", "normal_force", 1), "masked"),
     (lambda: Cone(MASKED), ("profile", "slope", 1), "masked"),
     (lambda: Tabulated([0.0, 1.0, 2.0], MASKED), ("profile", "f", 1), "masked"),
@@ -180,7 +180,7 @@ REJECTED: list[tuple[Callable[[], Any], tuple[str | int, ...], str]] = [
     ),
     (lambda: Series((PowerTerm(0.0, 2.0),)), ("profile", "terms", 0, "coefficient"), "not zero"),
     (lambda: Series((PowerTerm(-1.0, 1.0), PowerTerm(1.0, 2.0))), ("profile", "terms"), "f falls"),
-    # It falls at radii below exp(-1e6) only, which no double holds.
+    # It falls only at radii below exp(-1e6), which are not representable.
     (
         lambda: Series((PowerTerm(-0.03, 1.0), PowerTerm(0.1, 1.000001))),
         ("profile", "terms"),

@@ -1,4 +1,4 @@
-"""Loads far smaller than friction keep their digits beside the normal load."""
+"""Loads far smaller than friction keep their accuracy beside the normal load."""
 
 from functools import partial
 

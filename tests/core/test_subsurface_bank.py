@@ -1,4 +1,4 @@
-"""Stresses beneath the surface meet the stored references, mainly at edges."""
+"""Stresses beneath the surface agree with the stored references, mainly at edges."""
 
 from __future__ import annotations
 

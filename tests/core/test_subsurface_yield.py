@@ -503,7 +503,7 @@ def test_onset_in_full_slip_next_to_a_cone() -> None:
 
 
 def test_contact_that_no_double_tells_from_its_flat() -> None:
-    """Its stresses are those of a flat punch."""
+    """Its stresses equal the stresses under a flat punch."""
     x, force = np.array([0.0, 0.2, 0.5, 0.9]), 1e-40
     rounded, flat = (
         normal.solve(profile, 3.0, normal_force=force)

@@ -132,7 +132,7 @@ def test_rounded_radii_on_a_long_flat_weight_the_heights() -> None:
 
 @pytest.mark.parametrize("seed", [900012, 900035])
 def test_no_pressure_exceeds_the_maximum(seed: int) -> None:
-    """Rounded heights left a slope for which g'/x rises on the axis: 3e-6 and 7e-6 were missed."""
+    """The rounded heights give a slope for which g'/x rises on the axis, by 3e-6 and 7e-6."""
     points = instrument_tables.drawn(seed, most=300)
     table = Tabulated(points.r, points.f)
     contact = solve(table, 1.0, contact_radius=0.02 * table.domain)
@@ -154,7 +154,7 @@ def test_scan_not_measured_from_its_axis_is_told_the_axis(
 
 
 def test_history_next_to_the_edge_of_a_flat() -> None:
-    """Contacts beyond the edge by less than the spacing of doubles, and by 1e-5 of it."""
+    """Contacts beyond the edge by less than the spacing of doubles, and by 1e-5 of the edge."""
     b, end = 0.0522589871276889, 0.160067550986061
     assert b / end * end != b
     r = np.union1d(np.linspace(0.0, end, 41), [b])
@@ -209,7 +209,7 @@ def test_depth_just_beyond_a_break_of_few_points() -> None:
 
 
 def test_nodes_stay_in_their_piece() -> None:
-    """Rounding errors led beyond a first piece that is far thinner than the others."""
+    """Rounding errors do not lead beyond a first piece far thinner than the others."""
     knots = np.array([0.0, 5.63e-15, 1.126e-9, 2.252e-9, 0.292, 1.0])
     seen: list[np.ndarray] = []
 

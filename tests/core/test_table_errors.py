@@ -74,7 +74,7 @@ def test_geometric_radii(body: Profile, least: float, *, axis: bool) -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_unit_changes_nothing(seed: int) -> None:
-    """Few points with a break, as of a flat and a parabola beside it."""
+    """Few points with a break, such as a flat and a parabola beside it."""
     random = np.random.default_rng(seed)
     count, end = int(random.integers(5, 13)), 10 ** random.uniform(-3, 1)
     r = end * np.r_[0, np.sort(random.uniform(0, 1, count - 2)), 1]

@@ -1,4 +1,4 @@
-"""Profiles and curves in files are read as they are meant, or refused with the line."""
+"""Profiles and curves in files are read as they are meant, or rejected with the line."""
 
 import json
 import math

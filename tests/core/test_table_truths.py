@@ -1,4 +1,4 @@
-"""Tables meet the body that they sample within their error estimate."""
+"""Tables agree with the body that they sample within their error estimate."""
 
 from __future__ import annotations
 
@@ -226,7 +226,7 @@ def test_units_change_nothing(name: str, unit: float) -> None:
 
 
 def test_units_of_a_kink_beside_its_break() -> None:
-    """The break is declared at a point, and the kink lies half a step below it."""
+    """The break is declared at a point; the slope discontinuity lies half a step below it."""
     b, step = 2.4, np.arange(9.0)
     f = np.maximum(step - b, 0.0) ** 2 / 1e4
     loads = [
@@ -238,7 +238,7 @@ def test_units_of_a_kink_beside_its_break() -> None:
 
 
 def test_decimal_units_of_rounded_points_change_nothing() -> None:
-    """Written digits are those of another unit: mm and m, nm and µm."""
+    """Digits may be written in another unit: mm and m, nm and µm."""
     table = instrument_tables.mesh_of_a_ball()
     r, f = table.r, table.f
     other = [[float(1000 * Decimal(repr(value))) for value in each.tolist()] for each in (r, f)]
@@ -314,7 +314,7 @@ def test_rough_ball(seed: int) -> None:
 
 @pytest.mark.parametrize("around", [1, 32])
 def test_mesh_of_a_ball(around: int) -> None:
-    """Two radii 1 µm apart; or 449 vertices on rings, in no order."""
+    """A profile with two radii 1 µm apart, or a mesh of 449 vertices on rings, in no order."""
     table = instrument_tables.mesh_of_a_ball(around)
     body = BODIES["sphere"]
     for depth in (1e-5, 1e-4, 1e-3):
@@ -350,7 +350,7 @@ def six_decimals() -> tuple[Array, Array]:
 
 
 def test_rounded_ball_has_a_finite_pressure() -> None:
-    """A sphere of radius 10, from which rounding takes the parabola at the tip."""
+    """A sphere of radius 10, whose rounded heights do not resolve the parabola at the tip."""
     contact = solve(Tabulated(*six_decimals()), 100.0, contact_radius=1.0)
     expected = 100 * BODIES["sphere"].pressure(0.0, 0.1)
     assert float(contact.maximum_pressure) == pytest.approx(expected, rel=1e-3, abs=0)
@@ -379,7 +379,7 @@ def test_yield_under_a_rounded_ball() -> None:
 @pytest.mark.parametrize("noise", [1e-3, 1e-2])
 @pytest.mark.parametrize("name", ["sphere", "cone", "rounded punch"])
 def test_noisy_tables(name: str, noise: float) -> None:
-    """The median of few seeds."""
+    """The median error over five seeds."""
     found = []
     for seed in range(5):
         table = instrument_tables.noisy(name, 200, noise, seed)
@@ -403,7 +403,7 @@ def test_equivalent_profile_never_falls(name: str) -> None:
 
 
 def test_warning_states_what_the_table_could_not_meet() -> None:
-    """One height is wrong by a hundredth of the last: the fit passes it by and says where."""
+    """One height is wrong by a hundredth of the last: the fit misses it, and a warning names it."""
     body = BODIES["sphere"]
     r, f = sampled(body, 60)
     f[40] -= 0.02 * f[-1]
@@ -561,7 +561,7 @@ def test_contact_beyond_the_table_is_rejected() -> None:
 
 
 def test_waviness_of_few_points_is_no_shape() -> None:
-    """A cone and paraboloid of 19 points was taken for exact: a depth erred by 10 %."""
+    """19 waved points of a cone and paraboloid: the depth is right, or `smoothed` is raised."""
     table = instrument_tables.drawn(249)
     a = np.array(table.radii())
     depth = np.array([table.depth(each) for each in a])
@@ -574,7 +574,7 @@ def test_waviness_of_few_points_is_no_shape() -> None:
 @pytest.mark.every(20)
 @pytest.mark.parametrize("seed", range(60))
 def test_table_of_an_instrument(seed: int) -> None:
-    """None is refused, none is wrong by 5 % without a word."""
+    """No table is rejected, and none is wrong by 5 % without a warning."""
     table = instrument_tables.drawn(seed, most=400)
     radius = np.array(table.radii())
     depth = np.array([table.depth(a) for a in radius])

@@ -1,4 +1,4 @@
-"""Force, displacement, stick radius and slip width meet the stored references."""
+"""Force, displacement, stick radius and slip width agree with the stored references."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Warnings and estimates of the model's error agree with figures of fuller solutions."""
+"""Warnings and estimates of the model's error agree with published, more complete solutions."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ def worn(
 
 
 def ring_integral(result: evolution.WearEvolution, cycle: int) -> float:
-    """2 pi int h r dr by independent quadrature, split at the kinks of h."""
+    """2 pi int h r dr by independent quadrature, split at slope jumps of h."""
     ends = [
         float(result.stick_radius[0]),
         float(result.stick_radius[cycle]),
@@ -464,7 +464,7 @@ def test_wear_settles_at_the_loosest_tolerance(cycles: float) -> None:
 def test_error_of_fields_next_to_the_edge_does_not_depend_on_units() -> None:
     """It is relative to the mean pressure, which is larger than the pressure there.
 
-    The two runs are compared over the whole annulus, so that it is that of the edge next to c.
+    The two runs are compared over the whole annulus; their difference next to c decides.
     """
     estimates = []
     for length in (1.0, 1e-6):

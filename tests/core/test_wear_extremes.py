@@ -186,7 +186,7 @@ def test_narrow_annulus_next_to_a_flat_wears_to_its_limit(body: Profile) -> None
 def test_first_cycle_of_a_narrow_annulus_takes_few_steps(
     body: Profile, part: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The wear in it is a part of 1e-6, which the rounding error of the slip must not reach."""
+    """The first cycle wears 1e-6 of the total, which must exceed the rounding error of the slip."""
     contact = normal.solve(body, 1.0, contact_radius=0.3 * (1 + 1.5e-5))
     contact = normal.solve(body, 1.0, indentation_depth=float(contact.indentation_depth))
     force = {"tangential_force": part * 0.4 * float(contact.normal_force)}
@@ -201,7 +201,7 @@ def test_first_cycle_of_a_narrow_annulus_takes_few_steps(
 def test_tightest_tolerance_takes_few_steps_in_mixed_control(
     body: Profile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Rounding errors of the rate of the wear that a growing stick zone retains stay below it."""
+    """The rounding error in the rate of the retained wear stays below the tolerance."""
     contact = normal.solve(body, 1.3, contact_radius=1.0)
     moved = 0.2 * 1.3 / 0.9 * float(contact.indentation_depth)
     contact = normal.solve(body, 1.3, normal_force=float(contact.normal_force))
@@ -216,7 +216,7 @@ def test_tightest_tolerance_takes_few_steps_in_mixed_control(
 
 
 def test_limit_within_the_rounding_error_of_a_flat_is_rejected() -> None:
-    """Else a worn volume would be negative."""
+    """Otherwise a worn volume would be negative."""
     contact = normal.solve(TruncatedCone(0.4, 0.7), 1.3, indentation_depth=[1e-3, 1e-11])
     with pytest.raises(AccuracyError, match="edge of a flat") as caught:
         limit.solve(contact, 0.9, 0.4, tangential_displacement=1e-12)

@@ -1,4 +1,4 @@
-"""The limit of fretting wear meets the stored references for every kind and control."""
+"""The limit of fretting wear agrees with the stored references for every kind and control."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Hostile and heavy clients: `python -m tests.faults.attacks NAME PORT SECONDS`.
 
-Each attack runs in a separate process, so that measurements beside it depend on the service only.
+Each attack runs in a separate process, so that it does not slow the measurements of a test.
 Prints the number of responses by status; 0 denotes a closed connection.
 """
 
@@ -17,7 +17,7 @@ from mdr_service.schemas.examples import EXAMPLES
 from tests.faults.load import HOST, Client, ResetError, post, request
 
 MEGABYTE = 2**20
-# Address of the attackers, other than that of the clients beside them.
+# Address of the attackers; the clients that are measured have another.
 ADDRESS = "127.0.0.2"
 MATERIAL = {"e_star": 1.0, "g_star": 0.8}
 CONE = {"profile": {"kind": "cone", "slope": 0.1}, "material": MATERIAL}

@@ -35,7 +35,7 @@ Campaign = Callable[[int, psutil.Process], Awaitable[list[Row]]]
 
 @asynccontextmanager
 async def beside(attack: str, port: int, seconds: float) -> AsyncIterator[Counter[str]]:
-    """Attack while in the context; yield the statuses, which are there when it is left."""
+    """Attack while in the context; yield the statuses, which are complete after its end."""
     command = [sys.executable, "-m", "tests.faults.attacks", attack, str(port), str(seconds)]
     attackers = await asyncio.create_subprocess_exec(*command, stdout=asyncio.subprocess.PIPE)
     found: Counter[str] = Counter()

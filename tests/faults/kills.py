@@ -111,7 +111,7 @@ def compute_processes(server: psutil.Process) -> list[psutil.Process]:
 
 
 async def lost(port: int) -> int:
-    """Return the number of compute processes that ended, by the metrics."""
+    """Return the number of compute processes that ended, according to the metrics."""
     async with clients(port, 1) as (client,):
         text = (await client.ask(METRICS)).body.decode()
     pattern = r'^mdr_compute_restarts_total\{reason="(?:lost|start)"\} (\S+)'

@@ -49,7 +49,7 @@ async def parallel(port: int, _server: psutil.Process) -> list[Row]:
 
 
 async def patiently(client: Client, text: bytes) -> Response:
-    """Return the answer, asking again as long as the service is busy."""
+    """Return the response; repeat the request as long as the service is busy."""
     while True:
         answer = await client.ask(text)
         if answer.status != 503:

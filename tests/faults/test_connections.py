@@ -1,4 +1,4 @@
-"""A connection is accepted, and closed after a request that spoils it."""
+"""Every connection is accepted, and closed after a request that leaves it unusable."""
 
 import asyncio
 import http.client

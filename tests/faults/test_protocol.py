@@ -265,7 +265,7 @@ def test_pipelined_requests_are_answered_in_order(served: Served) -> None:
 
 
 def test_flood_of_pipelined_requests_is_answered_one_by_one(served: Served) -> None:
-    """The next is read when the response to the one before is written."""
+    """The next request is read after the response to the previous one is written."""
     assert [status for status, _ in served.responses(GET * 3_000, number=3_000)] == [200] * 3_000
 
 

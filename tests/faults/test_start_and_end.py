@@ -1,4 +1,4 @@
-"""The service refuses wrong settings at the start, and sends its responses before it ends."""
+"""The service rejects invalid settings at the start, and sends its responses before it ends."""
 
 import http.client
 import json
@@ -102,7 +102,7 @@ def test_standard_error_that_nobody_reads_does_not_stop_the_service() -> None:
     port = free_port()
     with running(service(port), port, **FEW) as process:
         with connected(port) as client:
-            # A pipe holds some 400 lines.
+            # A pipe holds about 400 lines.
             for _ in range(2_000):
                 client.request("GET", "/health")
                 assert client.getresponse().read()

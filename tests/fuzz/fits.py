@@ -1,4 +1,4 @@
-"""Every fit of a random curve returns finite parameters with standard errors, or is refused.
+"""Every fit of a random curve returns finite parameters with standard errors, or is rejected.
 
 Run with `python -m tests.fuzz.fits COUNT SEED`.
 """
@@ -115,7 +115,7 @@ def fault(query: dict[str, Any]) -> str:
 
 
 def main(count: int, seed: int) -> int:
-    """Print the faults of so many fits, and return their number."""
+    """Print the faults of `count` fits, and return their number."""
     random, faults = np.random.default_rng(seed), 0
     for i in range(count):
         query = drawn(random)

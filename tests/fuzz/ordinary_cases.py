@@ -272,7 +272,7 @@ _MOST_SEARCHED: Final = 50
 
 
 def subsurface(random: Random, kind: str | None = None) -> dict[str, Any]:
-    """Return a query of stresses beneath the surface, of any load; some search their peaks."""
+    """Return a query of stresses beneath the surface under any load; some search for the peak."""
     scene = contact(random, kind)
     query = scene.query | {"body": random.choice((1, 2))}
     query["material"].pop("yield_strength", None)

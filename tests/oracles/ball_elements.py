@@ -20,8 +20,8 @@ ACROSS, GROWTH = 16, 1.12
 def force(nu: float, cap: float, depth: float) -> float:
     """Force of each plane at its depth, on a contact up to the sine `cap`; E = R = 1.
 
-    At a given depth the force is least sensitive to the contact radius: that of the contact makes
-    the energy stationary.
+    At a given depth the force is least sensitive to the contact radius, because the actual one
+    makes the energy stationary.
     """
     edge = np.arcsin(cap)
     polar, radial = _graded(edge, np.pi / 2), 1 - _graded(edge, 1 - HOLE)

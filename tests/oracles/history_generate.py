@@ -1,6 +1,6 @@
 """Generate the banks of histories: ``python -m tests.oracles.history_generate``.
 
-The output is byte-reproducible. Two processes share the work; the order is that of the cases.
+The output is byte-reproducible. Two processes compute it in the order of the cases.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class Scene:
 
 
 def _chosen_regimes(family: Family) -> Iterator[tuple[str, float]]:
-    """The first regime, and those next to a break."""
+    """The first regime, and the regimes next to a break."""
     yield family.regimes[0]
     for regime, ratio in family.regimes[1:]:
         if regime in (*CLOSE, "b/a=0.95") and family.name in ("rounded-punch", "rounded-cone0.3"):
@@ -291,7 +291,7 @@ def tasks() -> Iterator[Task]:
 
 
 def _new_kind(everything: list[Scene], number: int) -> bool:
-    """The first scene of each kind; all but steep ones for powers."""
+    """The first case of each kind, and for powers all but the steep ones."""
     scene = everything[number]
     if scene.regime in CLOSE:
         return False

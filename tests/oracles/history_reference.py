@@ -93,7 +93,7 @@ def _load_step(
 
 
 def fronts(path: Path, material: Material) -> list[mpf]:
-    """Ends of the intervals of equal branches, from 0 to the largest depth."""
+    """Ends of the depth intervals over which the branches agree, from 0 to the largest depth."""
     top = max(mpf(d) for d, _ in path)
     floor = top * mpf(10) ** -FRONT_DIGITS
 

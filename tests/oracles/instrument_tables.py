@@ -1,7 +1,7 @@
 """Tables as instruments, meshes and spreadsheets write them, each with the body that it measures.
 
 A habit is what a file does to exact heights: it rounds, quantises, adds noise, offsets or repeats
-points. `drawn` combines several of them by a seed, as files do.
+points. `drawn` combines several habits at random, as files do.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class InstrumentTable:
     body : what was measured.
     length, height : units of the radii and heights of the body in those of the file.
     end : last radius at which the table shows the body, in units of the body.
-    error : standard error of the heights, by noise, rounding and the radii's rounding [length].
+    error : standard error of the heights, due to noise and the rounding of r and f [length].
     breaks, uncertainty : what the user declares.
     single_disc : False if the file shows more than the body, of another shape than a disc allows.
     """
@@ -82,14 +82,14 @@ def radii(random: Generator, count: int, end: float, spacing: str) -> Array:
 
 
 def rounded(values: Array, decimals: int) -> Array:
-    """Numbers as written with so many decimals after the leading digit of the largest."""
+    """Numbers as written with `decimals` decimals after the leading digit of the largest."""
     largest = float(np.abs(values).max())
     place = decimals - int(np.floor(np.log10(largest))) if largest else decimals
     return np.round(values, place)
 
 
 def significant(values: Array, digits: int) -> Array:
-    """Numbers as written with so many significant digits each."""
+    """Numbers as written with `digits` significant digits each."""
     return np.array([float(f"{value:.{digits - 1}e}") for value in values.tolist()])
 
 
@@ -99,7 +99,7 @@ def quantised(values: Array, step: float) -> Array:
 
 
 def waviness(random: Generator, r: Array, size: float, length: float) -> Array:
-    """Roughness of a standard deviation and a correlation length."""
+    """Roughness with a given standard deviation and correlation length."""
     waves = 2 * np.pi * random.standard_normal(40) / length
     phases = random.uniform(0, 2 * np.pi, 40)
     return np.asarray(size * np.sqrt(2 / 40) * np.cos(np.outer(r, waves) + phases).sum(axis=1))
@@ -193,7 +193,7 @@ def _places(
 def _surroundings(
     random: Generator, body: Body, r: Array, f: Array, habits: list[str]
 ) -> tuple[Array, Array, bool]:
-    """Add what a file shows beyond the body: a wall, or a ledge, which is no single disc."""
+    """Add what a file shows beyond the body: a wall, or a ledge, which is not a single disc."""
     draw = random.random()
     if draw > 0.12:
         return r, f, True
@@ -247,7 +247,7 @@ def _order(random: Generator, count: int, habits: list[str]) -> Array:
 
 
 def noisy(name: str, count: int, noise: float, seed: int) -> InstrumentTable:
-    """Return a table with white noise relative to the rise, whose uncertainty is stated."""
+    """Return a table with white noise relative to the rise, and with its uncertainty."""
     random, body = np.random.default_rng(seed), BODIES[name]
     r = np.linspace(0.0, body.end, count)
     rise = float(body.f(np.array(body.end)))

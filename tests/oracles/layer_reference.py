@@ -86,7 +86,7 @@ def _fixed_point(kernel: Numbers, source: Numbers) -> Numbers:
 
 @dataclass(frozen=True)
 class LayerContact:
-    """Contact of the radius a = E* = 1 with a layer, of a profile in the form of a request."""
+    """Contact of a requested profile with a layer, a = E* = 1."""
 
     profile: Mapping[str, Any]
     thickness: float

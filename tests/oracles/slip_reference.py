@@ -296,7 +296,7 @@ def values(at: Setting, c: mpf, *, energy: bool = True) -> dict[str, mpf]:
 
 
 def gradients(at: Setting, c: mpf) -> dict[str, tuple[mpf, mpf]]:
-    """(d/da, d/dc) of each result; those of the energy by parts."""
+    """(d/da, d/dc) of each result; the energy is integrated by parts."""
     body, a = at.body, at.a
     slope_a, slope_c = body.dg(a), body.dg(c)
     step, half = at.depth - body.g(c), (at.n - body.force(c)) / 2

@@ -54,7 +54,7 @@ class Table:
 
 
 def bodies(random: Generator, end: float) -> tuple[tuple[Profile, tuple[float, ...]], ...]:
-    """Ten bodies of one last radius, each with the radii of its kinks."""
+    """Ten bodies with the same last radius, each with the radii of its slope discontinuities."""
     steep, b = 10 ** random.uniform(-2, 0), end * random.uniform(0.15, 0.6)
     tip = end * 10 ** random.uniform(-2, 0)
     return (
@@ -88,7 +88,7 @@ def spaced(random: Generator, count: int) -> Array:
 
 
 def digits(values: Array, count: int) -> Array:
-    """Round to so many significant digits each."""
+    """Round each value to `count` significant digits."""
     return np.array([float(f"{value:.{count - 1}e}") for value in values.tolist()])
 
 

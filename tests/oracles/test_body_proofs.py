@@ -54,7 +54,7 @@ def test_closed_forms_of_quadratures() -> None:
 
 
 def test_pressure_of_a_sum_carries_its_force() -> None:
-    """2π ∫ p r dr on either side of the kink: Gauss's rule leaves 1e-4 at its logarithms."""
+    """2π ∫ p r dr on either side of the slope jump: Gauss's rule leaves 1e-4 at its logarithms."""
     body, a = BODIES["double cone"], 0.55
     nodes, weights = np.polynomial.legendre.leggauss(24)
     carried = 0.0

@@ -1,4 +1,4 @@
-"""Fuller models that `verification` solves itself meet their own references."""
+"""The more complete models that `verification` solves agree with their own references."""
 
 import numpy as np
 import pytest

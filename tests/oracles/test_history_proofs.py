@@ -186,7 +186,7 @@ def test_oblique_loading_sticks_and_shifts_the_friction_limit(name: str, directi
 
 @few
 def test_normal_load_at_constant_displacement(name: str) -> None:
-    """Increasing: no slip. Decreasing: the force is that of first loading at the lower load."""
+    """Increasing: no slip. Decreasing: the force of first loading at the lower load."""
     u = 0.3 * full_slip_displacement(DEPTH)
     computed = history(PROFILES[name], [(DEPTH / 2, 0.0), (DEPTH / 2, u), (DEPTH, u)], MATERIAL)
     with mp.workdps(slip.WORK_DIGITS):
@@ -200,7 +200,7 @@ def test_normal_load_at_constant_displacement(name: str) -> None:
 
 @few
 def test_separation_erases_slip_memory(name: str) -> None:
-    """The contact is re-established where it is, half-way through this load step."""
+    """The contact is re-established at its current place, half-way through this load step."""
     u = 0.4 * full_slip_displacement(DEPTH)
     computed = history(PROFILES[name], [(DEPTH, u), (-DEPTH, 2 * u), (DEPTH, 3 * u)], MATERIAL)
     fresh = history(PROFILES[name], [(DEPTH, 3 * u - 2.5 * u)], MATERIAL)

@@ -45,7 +45,7 @@ def setting_of(profile: Profile, radius: float) -> Setting:
 
 
 def chosen(name: str) -> Setting:
-    """Return a contact that extends beyond the break, if there is one."""
+    """Return a contact that extends beyond the break of the profile, if it has one."""
     profile = PROFILES[name]
     b = float(reference.ShapeBody(profile).b)
     return setting_of(profile, 1.7 * b if b else 0.5)

@@ -43,7 +43,7 @@ class FullSlip:
         """V, d, F_N and a at ascending numbers of cycles, (4, k), and their errors.
 
         From once, twice and four times the intervals, extrapolated to the orders 3/2, of the
-        pressure next to the singularity of its kernel, and 2. The error is what the last adds.
+        pressure next to the singularity of its kernel, and 2. The error is the last correction.
         """
         values = [self.run(cycles, n * intervals) for n in (1, 2, 4)]
         for order in (1.5, 2.0):

@@ -1,6 +1,6 @@
 """Generate the bank of wear limits: ``python -m tests.oracles.wear_generate``.
 
-The output is byte-reproducible. Two processes share the work; the order is that of the cases.
+The output is byte-reproducible. Two processes compute it in the order of the cases.
 """
 
 from __future__ import annotations

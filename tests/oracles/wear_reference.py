@@ -3,7 +3,7 @@
 Everything follows from the limiting equivalent profile of Eq. (5.82), g = g_0 for x < c and g = d
 for c < x < r_out. The force is its integral, the shape its inverse transform, and the outer radius
 the root at which that transform meets the initial shape. The pressure is the transform of its slope
-with the jump at c. Panels, digits and quadrature are those of partial slip; condition numbers are
+with the jump at c. Panels, digits and quadrature are as in partial slip; condition numbers are
 difference quotients for inputs that differ in the 30th digit.
 """
 

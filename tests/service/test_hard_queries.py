@@ -1,4 +1,4 @@
-"""Queries that once failed, erred or ran long have finite results or a pointer."""
+"""Hard queries have finite results in a short time, or an error with a pointer."""
 
 import json
 from pathlib import Path

@@ -198,7 +198,7 @@ def test_a_batch_carries_states_on_and_tables_leave_them_out(client: Client, sta
 
 
 def test_steps_of_a_cosimulation_are_exact_without_a_warning(client: Client) -> None:
-    """A mass slides and stops: the energy of the last steps is small beside that before."""
+    """A mass slides and stops: the last steps dissipate little of the total energy."""
     request = {
         "profile": {"kind": "paraboloid", "radius": 0.01},
         "material": {"e_star": 115e9, "g_star": 95e9},

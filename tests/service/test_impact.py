@@ -39,7 +39,7 @@ def test_response_equals_the_core(client: Client) -> None:
     for name in hit.quantities:
         assert document[name] == getattr(hit, name).tolist(), name
     assert document["error_estimate"] == hit.error_estimate
-    # Free balls of this radius are no half-spaces.
+    # Free balls of this radius are not half-spaces.
     assert [warning["code"] for warning in document["warnings"]] == ["half_space"]
 
 

@@ -74,7 +74,7 @@ def answer(name: str, query: dict[str, Any]) -> dict[str, Any]:
 
 
 def panels(figure: Figure) -> list[Axes]:
-    """Return the axes that are not a scale of colours."""
+    """Return the axes that are not a colour bar."""
     return [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
 
 

@@ -127,7 +127,7 @@ def test_estimate_above_the_limit_has_a_warning(client: Client) -> None:
 
 
 def test_loss_of_accuracy_is_warned_of_once(client: Client) -> None:
-    """Both the table and the rounding of the edge next to a radius lose digits."""
+    """Both the table and the rounding of the edge next to a radius reduce the accuracy."""
     table = {"kind": "tabulated", "r": [0.0, 0.5, 1.0, 2.0], "f": [0.0, 0.125, 0.5, 2.0]}
     query = {"profile": table, "material": {"e_star": 1.0}, "load": {"normal_force": 0.5}}
     (a,) = client.post("/v1/normal", query).json()["contact_radius"]

@@ -1,4 +1,4 @@
-"""A file over HTTP has the columns and lists of the core, and is else refused with its line."""
+"""A file over HTTP has the columns and lists of the core, or is rejected with its line."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A table is fitted once, and a fit in the cache answers for its own table only."""
+"""A table is fitted once, and a fit in the cache is used for its own table only."""
 
 import json
 

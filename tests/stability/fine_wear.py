@@ -156,7 +156,7 @@ def fine_over_break(name: str, nodes: int = FINE_NODES) -> dict[str, np.ndarray]
 
 
 def stored(kind: str, name: str) -> dict[str, np.ndarray]:
-    """Stored results of `fine`, and with the kind "break" of `fine_over_break`."""
+    """Stored results of `fine`, or of `fine_over_break` for the kind "break"."""
     with np.load(STORED) as file:
         names = (*evolution.SCALARS, *evolution.FIELDS)
         return {each: file[f"{kind}/{name}/{each}"] for each in names}

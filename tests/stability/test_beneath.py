@@ -107,7 +107,7 @@ def plain_gauss(contact: NormalContact | TangentialContact, place: list[float]) 
 def beneath(
     title: str, distance: str, distances: Array, points: list[tuple[Any, list[float], Array]]
 ) -> Curve:
-    """The errors at points of some contact, whose exact stresses are given."""
+    """The errors at points of contacts whose exact stresses are given."""
     ours, naive, bound = [], [], []
     for contact, place, exact in points:
         result = stress(contact, *place, poissons_ratio=NU, body=2)

@@ -28,7 +28,7 @@ LABEL = "1 − r/a"
 
 
 def radii() -> Any:
-    """Radii next to a; the actual distance is that of the rounded radius."""
+    """Radii next to a; the actual distance is from the rounded radius."""
     return A - steps(0.5, 2.3e-16, 40)
 
 

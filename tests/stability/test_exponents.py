@@ -1,4 +1,4 @@
-"""Powers with exponents n -> 0 and n -> infinity keep their digits."""
+"""Powers with exponents n -> 0 and n -> infinity keep their accuracy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Results keep their digits from nanometres to megametres and pascals to terapascals.
+"""Results keep their accuracy from nanometres to megametres and pascals to terapascals.
 
 The core has no intrinsic scale, so results must not depend on units. The naive root finders stop at
 an absolute tolerance, which introduces one.

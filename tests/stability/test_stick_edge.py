@@ -1,4 +1,4 @@
-"""Stick edge, r -> c: traction and slip keep the digits of their powers 1/2 and 3/2."""
+"""Stick edge, r -> c: traction and slip keep the accuracy of their powers 1/2 and 3/2."""
 
 from __future__ import annotations
 

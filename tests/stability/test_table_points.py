@@ -1,4 +1,4 @@
-"""Force and depth of a table err by no more than its points explain."""
+"""Force and depth of a table err by no more than its points allow."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The axis, r -> 0: unbounded logarithms and powers keep their digits."""
+"""The axis, r -> 0: unbounded logarithms and powers keep their accuracy."""
 
 from __future__ import annotations
 

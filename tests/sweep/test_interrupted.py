@@ -1,4 +1,4 @@
-"""An interrupted sweep resumes and gives bytes identical to those of an uninterrupted one."""
+"""An interrupted sweep resumes and gives the same bytes as an uninterrupted one."""
 
 import json
 import resource

@@ -176,7 +176,7 @@ def _branch(
         scale = base or 1.0
         upper, lower = (change(end[index] / scale) for end in (split, s_low))
     if base == 0:
-        # Under a needle the end of the power's reach may be no double.
+        # Under a needle the end of the power's reach may not be representable.
         reach = np.maximum(upper - reach_of_power(branch.tip), -LOG_RANGE)
         lower = np.maximum(lower, reach)
     far = s_r[index]

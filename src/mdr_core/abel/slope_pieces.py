@@ -2,8 +2,8 @@
 
 Depth, force and energy are sums of closed integrals. An integral with a root at r is taken piece
 by piece: by Gauss's rule in x on pieces whose distance from r is at least twice their length, and
-next to r in w, x = r +- w^2, which removes the root. Lengths of pieces are carried, not differences
-of their ends, so that an annulus may be as narrow as its width is accurate.
+next to r in w, x = r +- w^2, which removes the root. Each piece stores its length, not only its
+ends, so that a narrow annulus keeps the accuracy of its width.
 
 Source: notes, §5.
 """
@@ -26,7 +26,7 @@ from mdr_core.typing import Array
 
 # Distance of a piece from r, over its length, from which Gauss's rule in x converges as 9.9^-2n.
 _FAR: Final = 2.0
-# Nodes there: they leave 1e-11 of the roughest piece, and 1e-16 of a smooth one.
+# Nodes on far pieces: the error is 1e-11 on the roughest piece, and 1e-16 on a smooth one.
 _FAR_NODES, _FAR_WEIGHTS = composite_rule(8)
 # Rules for a piece next to r: beyond r (1), and within r (-1), where the pole x = -r is nearer.
 _NEAR: Final = {1: composite_rule(12), -1: composite_rule(16)}
@@ -59,7 +59,7 @@ def integrals(
     x = (left[:, None] + length[:, None] * _FAR_NODES).ravel()
     weighted = sparse.diags((length[:, None] * _FAR_WEIGHTS).ravel()) @ slope(x)
     inner, outer = (left, left + length)[::sign]
-    # In this order of radii a piece is far up to its limit.
+    # In this order of radii a piece is far from all radii before its limit.
     limit = sign * inner - _FAR * length
     limits, squares = limit.repeat(_FAR_NODES.size), sign * (x * x)
     total = np.zeros((r.size, *weighted.shape[1:]))
@@ -164,11 +164,11 @@ class SlopePieces:
     def stress(self, low: float, high: float, width: float, r: Array) -> Array:
         """Return int_max(r,low)^high g'(x)/sqrt(x^2 - r^2) dx at radii r < high.
 
-        The slope at a sharp tip is that of a cone, whose integral is closed.
+        A sharp tip is a cone to first order, whose integral is closed.
 
         Parameters
         ----------
-        low, high, width : ends c and a of the annulus, and a - c as accurate as it is narrow.
+        low, high, width : ends c and a of the annulus, and a - c, accurate by itself.
         r : radii [length], shape (m,).
         """
         # Next to the axis a smooth stress is constant to second order.
@@ -199,7 +199,7 @@ class SlopePieces:
 
         Parameters
         ----------
-        low, width : inner radius and width, as accurate as it is narrow [length].
+        low, width : inner radius and width, each accurate by itself [length].
         kernels : K of each integral.
         """
         if width == 0:

@@ -20,7 +20,7 @@ def stress_integral(branches: Sequence[Branch], annulus: Annulus, r: Array) -> A
     ----------
     branches : intervals of g'.
     annulus : a and c as radii.
-    r : radii 0 <= r < a [length], shape (m,); on the axis that next to it, if a tip is sharp.
+    r : radii 0 <= r < a [length], shape (m,); on the axis of a sharp tip, a radius next to it.
     """
     a, width, c = (np.broadcast_to(part, r.shape) for part in annulus[:3])
     narrow, total = width < a / 2, np.zeros(r.shape)
@@ -40,8 +40,8 @@ def _on_part(branch: Branch, low: Array, high: Array, gap: Array, r: Array) -> A
     """Stress integral over low < x < high, gap = high - low, at radii below high."""
     base = branch.base
     if base == 0:
-        # Nearer to the axis the stress is that on it, up to rounding error: its relative deviation
-        # is of the order (r/c)^2. Without an inner edge only r = 0 itself is to be avoided.
+        # Nearer to the axis the stress equals its value there to rounding error: its relative
+        # deviation is of the order (r/c)^2. Without an inner edge only r = 0 must be avoided.
         r = np.maximum(r, np.where(low > 0, 1e-8 * low, 1e-120 * high))
     top = inverse_hypot(high, base)
     roots = np.maximum(top + inverse_hypot(low, base), TINY)

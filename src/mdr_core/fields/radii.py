@@ -23,7 +23,7 @@ from mdr_core.typing import Array
 from mdr_core.validation import extremes, require_type, require_whole
 
 # Largest error of a field due to the error of an edge, relative to its largest value, on a grid
-# with room enough. It is a tenth of the other estimated errors.
+# with enough space between the edges. It is a tenth of the other estimated errors.
 _GRID_ERROR: Final = 1e-12
 
 

@@ -49,7 +49,7 @@ def torsional_stress(contact: TorsionalContact, radius: ArrayLike) -> Array:
             at, ends = r[inside], Annulus(*map(np.array, (a[load], width[load], c[load])))
             depth = max(1.0, np.log(a[load] / c[load]))
             curve = VirginCurves(profile, np.array(edge[load : load + 1]), depth)
-            # The disc of a flat punch turns first.
+            # The disc of the flat takes the first part of the rotation.
             step = min(rotation[load], float(curve.step[0]) * np.pi / 2)
             disc = step / np.sqrt((a[load] - at) * (a[load] + at))
             others = stress_integral(curve.branches, ends, at) if width[load] > 0 else 0.0

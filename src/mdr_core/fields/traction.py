@@ -1,4 +1,4 @@
-"""Traction of a contact under one load, in annuli, and fields over the loads.
+"""Traction of a contact as annuli under one load, and evaluation of fields for many loads.
 
 Between two neighbouring slip fronts dq_x/dq = mu k, k the slope of the anchors: 0 where the springs
 stick under a monotonic load, 1 where they slip. A stress is therefore a sum of kernels, each over
@@ -82,7 +82,7 @@ class Traction(NamedTuple):
         # The springs of a flat carry the load of its edge.
         inside = r < self.radius[-1]
         x = np.maximum(r[inside], self.radius[0])
-        # At the onset of the load the contact radius is that of the flat.
+        # At the onset of the load the contact radius is the radius of the flat.
         i = np.minimum(np.searchsorted(self.radius, x, side="right"), self.slope.size) - 1
         result[inside] = self.above[i]
         inside[inside] = slips = self.slope[i] != 0

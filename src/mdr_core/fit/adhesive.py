@@ -22,7 +22,7 @@ from mdr_core.typing import Array
 
 # Multiple of the pull-off depth beyond which no point is in contact.
 _AFTER: Final = 1.5
-# Standard errors of the contact point, within which points are at the depth of the least force.
+# Standard errors of the contact point by which the depth of the least force may be in error.
 _NEAR: Final = 2.0
 # Fewest points after a pull-off: one alone would decide on offset and adhesion.
 _DETACHED: Final = 3
@@ -30,7 +30,7 @@ _DETACHED: Final = 3
 _SEEN: Final = 3.0
 # Increase of the sum of squares, over the variance of the noise, up to which w = 0 is as likely.
 _NO_WORSE: Final = 0.1
-# Increase up to which the error of w follows from the increase: by the slopes it is too small.
+# Increase of this sum up to which it determines the error of w, which slopes underestimate.
 _FAR: Final = 9.0
 # Probability by chance, below which points do not belong to a fit. Each curve has several tests.
 _CHANCE: Final = 1e-4
@@ -121,7 +121,7 @@ def _is_noise(model: Model, more: Model) -> bool:
 
 
 def _least(model: Model) -> float:
-    """Return the sum of squares, at least that of residuals that are rounding error.
+    """Return the sum of squares, or the sum for residuals of rounding error if it is larger.
 
     It is a divisor, and zero forces have no rounding error.
     """
@@ -137,8 +137,8 @@ def _states(model: Model) -> adhesion.Curve:
 def _least_stable(model: Model) -> float:
     """Return the depth of the least force, less the error of the contact point.
 
-    To leave out points up to the least of noisy forces, which is low by chance, would bias the fit.
-    About the depth of the least force the force hardly changes.
+    The least of noisy forces is low by chance: leaving out the points up to it would bias the fit.
+    Near the depth of the least force the force hardly changes.
     """
     states = _states(model)
     depth = float(states.load("indentation_depth", states.at_pull_off))
@@ -154,8 +154,8 @@ def _touching(curve: Model) -> Model:
 
     Points after the pull-off are all before the largest jump, if they fit the other states within
     the noise; else those well below the pull-off depth of a fit of these, or below the contact
-    point of a fit without adhesion. States in contact alone leave the pull-off depth open in noise,
-    as offset, adhesion and contact point compensate.
+    point of a fit without adhesion. In noise, states in contact alone do not determine the pull-off
+    depth, because offset, adhesion and contact point compensate.
     """
     curve = curve.of(np.argsort(curve.depth, kind="stable"))
     depth, force = curve.depth, curve.force

@@ -24,17 +24,18 @@ from mdr_core.typing import Array, Flags, Indices
 
 PARAMETERS: Final = ("e_star", "contact_point", "force_offset", "work_of_adhesion")
 """Quantities that can be fitted."""
-# Points of the curve at which contact points are tried first, about; of these contact points some
-# lie within the curve, and others before it, so many a decade, from a part of its length to a
-# multiple of it, without adhesion and with. The upper part of a curve starts far from its contact.
+# First trials of the contact point: points of the curve used, about; trials within the curve, and
+# trials per decade before it, as the upper part of a curve starts far from its contact.
 _POINTS, _WITHIN, _BEFORE = 100, 50, 20
+# Distances of these trials before the curve over its length: least, and largest without adhesion
+# and with it.
 _NEAREST, _FARTHEST, _FARTHEST_ADHESIVE = 1e-3, 1e4, 1.0
 # Retractions that are tried first, at the contact radius of the whole range of depths and over it.
 _RETRACTIONS: Final = np.logspace(-3, 0.5, 15)
 # Depths between which the force with adhesion is linear for the first values.
 _GRID: Final = 500
-# Least c = (2 pi w/E*)^(1/2) over the root of the range of depths, at which the contact is that
-# without adhesion to rounding, and has its slope in w.
+# Smallest c = (2 pi w/E*)^(1/2) over the root of the range of depths. The contact equals the one
+# without adhesion to rounding error, and still has its slope in w.
 LEAST_C: Final = 1e-6
 
 
@@ -79,7 +80,7 @@ class Model(CurveModel):
 
     @property
     def least_ratio(self) -> float:
-        """Least w/E* that is fitted [length]."""
+        """Smallest w/E* that is fitted [length]."""
         return LEAST_C**2 * float(np.ptp(self.depth)) / (2 * pi)
 
     def of(self, points: Indices) -> Self:

@@ -20,10 +20,10 @@ from mdr_core.normal import NormalContact
 from mdr_core.residuals import ROUNDING
 from mdr_core.typing import Array
 
-# Either half of an interval over that by the standard error, or the inverse, if it is lopsided.
+# Ratio of a half interval to the half from the standard error, or its inverse, if lopsided.
 _LOPSIDED: Final = 1.5
-# Growth of a standard error without a single point: at most 1.9 in curves of six points whose
-# noise is white, and 4.6 (median) where one point is taken for the pull-off.
+# Growth of a standard error if one point is left out: at most 1.9 in curves of six points with
+# white noise, and 4.6 (median) where one point is taken for the pull-off.
 _ONE_POINT: Final = 2.5
 _CAUSES: Final = {
     "misfit": "the shape, the range of the fit or the model is wrong",
@@ -141,7 +141,7 @@ def _misfit(model: Model) -> tuple[float, tuple[Notice, ...]]:
 
 
 def _open(model: Model) -> tuple[Notice, ...]:
-    """Return the warning that the interval of the contact point is not that of its error.
+    """Return the warning that the interval of the contact point does not follow from its error.
 
     At its ends the least squares for a given contact point exceed the minimum by the quantile of
     the F-distribution. Raises InputError if it has no end.
@@ -175,7 +175,7 @@ def _open(model: Model) -> tuple[Notice, ...]:
 
 
 def _decided_by_one(model: Model) -> tuple[Notice, ...]:
-    """Return the warning of a point without which a standard error would grow most.
+    """Return the warning of the point whose omission makes a standard error grow most.
 
     Without point i the error of parameter j grows by (1 + (C J^T)_ji^2/(C_jj (1 - h_i)))^(1/2).
     """

@@ -61,11 +61,11 @@ def solve(
     indentation_depth, normal_force : the curve, in any order, with or without the approach before
         contact [length], [force], shape (k,).
     fit : parameters to fit, of "e_star", "contact_point", "force_offset" and "work_of_adhesion".
-        All but the modulus are zero if they are not fitted. A curve with adhesion is that of
+        All but the modulus are zero if they are not fitted. With adhesion the curve must be
         unloading, with or without points after the pull-off. Its points between the least force and
         the pull-off, states that only a stiff instrument holds, are left out.
     e_star : effective modulus, needed unless it is fitted [pressure].
-    noise : standard deviation of the forces, by default that of the residuals [force].
+    noise : standard deviation of the forces, by default of the residuals [force].
     body_thickness : see `from_bodies` [length].
     segment : "loading" or "unloading", by the direction of the depth in the order of the curve,
         without holds; by default all points.
@@ -77,7 +77,7 @@ def solve(
     time : times of the points, non-decreasing, shape (k,). The drift is zero at time 0.
     drift : "hold" to subtract the drift of the depths: the slope of the least-squares line in the
         last hold at a constant force in the lower half of the range, times the time.
-    drift_rate, drift_rate_error : drift to subtract instead of that of a hold [length/time], and
+    drift_rate, drift_rate_error : drift to subtract, instead of one from a hold [length/time], and
         its standard deviation, 0 by default.
 
     Returns
@@ -166,7 +166,7 @@ def _of_sample(found: Fit, ratio: float, indenter: Body | Literal["rigid"]) -> F
     error = 0.0
     if "e_star" in found.fit:
         error = float(found.standard_errors[found.fit.index("e_star")]) / found.e_star
-    # The warnings and the error of the model are those of these bodies.
+    # The warnings and the error of the model depend on both bodies.
     assumed = found.normal.material
     bodies = from_bodies([indenter, Body(modulus, ratio)], body_thickness=assumed.body_thickness)
     return replace(
@@ -237,7 +237,7 @@ def _of_segment(kinds: NDArray[np.str_], segment: str) -> Indices:
 def _require_rise(depth: Array, force: Array) -> None:
     """Raise InputError if the force falls with the depth.
 
-    It falls to a pull-off too, whose least force is farther from most forces than the largest one.
+    A fall to a pull-off is valid: its least force is farther from the median than the largest one.
     """
     height, order = force - np.median(force), np.argsort(depth, kind="stable")
     tenth = max(depth.size // 10, 1)

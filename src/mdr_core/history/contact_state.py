@@ -43,7 +43,7 @@ class Edge(NamedTuple):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class LoadPointResults(Results):
-    """Results of one contact or of many, from the contacts whose edges the load points are."""
+    """Results of one contact or of many at their load points."""
 
     profile: Profile
     """Profile of all contacts; its parameters are numbers, or arrays over the contacts."""
@@ -85,7 +85,7 @@ class LoadPointResults(Results):
 
     @cached_property
     def load_points(self) -> Edge:
-        """Contact whose edge the load point of each contact is."""
+        """Contact with its edge at the load point, for each contact."""
         edges, at = self.vertices, self.vertices.tree.at_load_points
         return Edge(*map(at, (edges.coordinate, edges.conjugate, edges.shear)))
 
@@ -212,7 +212,7 @@ class ContactState(LoadPointResults):
 
     @cached_property
     def load_points(self) -> Edge:
-        """Contact whose edge the load point is."""
+        """Contact with its edge at the load point."""
         return self._edges[-1]
 
     @property

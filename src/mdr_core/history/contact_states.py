@@ -175,7 +175,7 @@ def advance_many(
 
 
 def join(*states: ContactState | ContactStates) -> ContactStates:
-    """Return the states of several sets of contacts as those of one, in their order.
+    """Return the states of several sets of contacts as one set, in their order.
 
     Parameters, moduli and coefficients of friction may differ, but not a table or a series. Raises
     InputError without states, and for profiles of several kinds.
@@ -194,7 +194,7 @@ def join(*states: ContactState | ContactStates) -> ContactStates:
         raise InputError(("states",), "at least one is needed")
     profile, sizes = many[0].profile, [len(each) for each in many]
     parameters = [each.profile.parameters for each in many]
-    # A table has no parameters, and those of a series are not numbers.
+    # A table has no parameters, and a series has parameters that are not numbers.
     numbers = parameters[0] and not any(isinstance(one, tuple) for one in parameters[0].values())
     for other in (each.profile for each in many):
         if other != profile if not numbers else type(other) is not type(profile):

@@ -39,10 +39,10 @@ def dissipation(moments: IntervalMoments, tree: VertexTree) -> Array:
 
 
 def _work(moments: IntervalMoments, pieces: Array) -> Array:
-    """Return G* D/(mu E*)^2 of pieces; the rows are those of `SlipFront` without the step."""
+    """Return G* D/(mu E*)^2 of pieces, given as rows of `SlipFront` without the step."""
     low, span, terms = pieces[0], pieces[1], pieces[2:]
     if moments.over_forces:
-        # Prescribed forces do not exceed friction, so that work on the axis is rounding error.
+        # Prescribed forces stay below the friction limit: work on the axis is rounding error.
         terms[0, low == 0] = 0.0
     edges = moments.contact_coordinate(np.array([low, low + span]))
     weights = moments.over(low, span, edges).weights
@@ -58,7 +58,7 @@ def swept(tree: VertexTree) -> Array:
     tops = np.append(top, tree.top)[:count]
     before = np.hstack([load_points, tree.path])[:, :count].copy()
     steps = tree.parent, tree.vertices, tops, before, tree.path
-    # A sweep without room counts the pieces.
+    # A sweep into an empty array counts the pieces.
     made = kernel.SlipFront(np.empty((_NUMBERS, 0))).run(*steps)
     pieces = np.empty((_NUMBERS, made))
     kernel.SlipFront(pieces).run(*steps)

@@ -3,7 +3,7 @@
 A path starts from the unloaded bodies, or from the end of another path, whose state can be stored
 as JSON.
 
-Both loads vary linearly between two samples, in the plane in which the tangential control is exact:
+Both loads vary linearly between two samples, in the pair to which the tangential control belongs:
 a displacement with the depth, a tangential force with the normal force. If the normal control
 belongs to the other pair, it is converted at the samples.
 """
@@ -57,7 +57,7 @@ class SavedState(NamedTuple):
 
     @classmethod
     def parsed(cls, given: Mapping[str, Any], contact: str) -> Self:
-        """Return the state of a `contact` from its members; raise InputError if it is of none."""
+        """Return the state of a `contact` from its members; raise InputError if they do not fit."""
         members: object = given
         if not isinstance(members, Mapping) or set(members) != set(cls._fields):
             detail = f"must have the members of a final_state: {', '.join(cls._fields)}"
@@ -99,7 +99,7 @@ UNLOADED: Final = SavedState("", 0.0, 0.0, 0.0, "no_contact", ())
 class SampledPath:
     """Points and samples of a load history, in the quantities that are prescribed.
 
-    Of two rows the first is the normal load, and the second the tangential load.
+    In arrays of two rows the first is the normal load, the second the tangential load.
     """
 
     start: ContactState
@@ -120,14 +120,14 @@ class SampledPath:
         if count == 1:
             return self.points
         share = np.arange(1, count + 1)
-        # Proportional forces stay proportional to rounding error, even where they approach zero.
+        # Within rounding error, proportional forces stay proportional, even close to zero.
         samples = start * ((count - share) / count) + stop * (share / count)
         samples = np.where(start == stop, stop, samples).reshape(2, -1)
         return np.hstack([self.points[:, :1], samples])
 
     @cached_property
     def loads(self) -> Array:
-        """Loads at the start and at each sample, shape (2, n + 1); the normal loads are even.
+        """Loads at the start and at each sample, evenly spaced in the normal load, (2, n + 1).
 
         Raises InputError at `load` for a normal load that has no contact.
         """

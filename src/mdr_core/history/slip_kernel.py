@@ -26,8 +26,8 @@ class PolylineStack:
         V_0 ... V_k, C, P'   otherwise; k is the last vertex with f_k <= f' and b_k <= b'.
 
     The corner C is the place between V_k and V_k+1 at which the second of the two sums falls to
-    its value at P'. The other sum of C has its value on the segment; between C and P' only this sum
-    grows. If the vertex on the axis exceeds P' as well, all springs slip, and C lies on the axis.
+    its value at P'. The other sum of C is interpolated on the segment, and only this sum grows from
+    C to P'. If the vertex on the axis exceeds P' as well, all springs slip, and C lies on the axis.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ class PolylineStack:
         self._extend(below, slope)
 
     def _slip(self, forward: float, backward: float) -> None:
-        """Cut the polyline where it exceeds the sums of the load point, and extend it to that."""
+        """Cut the polyline where it exceeds the sums of the load point, and extend it to there."""
         upper = self.top
         while upper > 0 and (
             self.rows[upper - 1, FORWARD] > forward or self.rows[upper - 1, BACKWARD] > backward

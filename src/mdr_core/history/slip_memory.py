@@ -160,7 +160,7 @@ def moved_each(lines: Polylines, load_points: Array) -> Polylines:
 
 
 def joined(lines: Sequence[Polylines]) -> Polylines:
-    """Return the polylines of several sets of contacts as those of one."""
+    """Return the polylines of several sets of contacts as one set."""
     vertices = np.concatenate([each.vertices for each in lines])
     ends = np.cumsum(np.concatenate([each.sizes for each in lines]))
     return Polylines(read_only(vertices), ends, np.hstack([each.load_points for each in lines]))

@@ -233,7 +233,7 @@ class LoadHistory(validity.ResultsOverLoads):
         # If the loads grow in the ratio of friction, only rounding errors move the front.
         if travel > ROUNDING * most and total > 0:
             error += most / travel * (1 - self.path.begin.dissipated_energy / total)
-        # A normal coordinate that is converted has the rounding error of an inverse.
+        # The conversion of the normal coordinate adds the rounding error of an inverse.
         return error * (ROUNDING if self.path.mixed else 2 * EPS)
 
     @cached_property
@@ -247,7 +247,7 @@ class LoadHistory(validity.ResultsOverLoads):
 
     @property
     def slips_from(self) -> Array:
-        """Least radius with slip [length] in full slip; infinite otherwise."""
+        """Smallest radius with slip [length] in full slip; infinite otherwise."""
         return np.where(self.regime == "full_slip", 0.0, np.inf)
 
 

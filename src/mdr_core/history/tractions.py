@@ -30,7 +30,7 @@ SHORT: Final = 2e-3
 
 @dataclass(frozen=True)
 class TractionVertices:
-    """Vertices of the polylines, with the contact whose edge each of them is."""
+    """Vertices of the polylines, each with the contact that has its edge there."""
 
     moments: IntervalMoments
     tree: VertexTree
@@ -139,14 +139,14 @@ def regime_codes(vertices: TractionVertices) -> Indices:
 
 
 def decides_regime(codes: Indices, normal: Array, deeper: Array, further: Array) -> Flags:
-    """Return True for steps after which the code is the slip regime; others keep the one before.
+    """Return True for steps after which the code is the slip regime; others keep the previous one.
 
-    Springs that reach their friction limit without slip, as where both forces grow in the ratio mu,
-    leave the regime as it is.
+    Springs that reach their friction limit without slip do not change the regime, for example
+    while both forces grow in the ratio mu.
 
     Parameters
     ----------
-    codes : those of `regime_codes`.
+    codes : result of `regime_codes`.
     normal : normal coordinate after each step.
     deeper, further : growth of the normal and of the tangential coordinate.
     """

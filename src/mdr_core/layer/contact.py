@@ -77,9 +77,9 @@ class LayerContact(NormalContact):
         return where(self.loaded, self.e_star * part, 0.0)
 
     def correction(self, load: Indices, radius: Array) -> Array:
-        """Pressure over E* beyond that of the half-space, each under the load of an index [1].
+        """Excess of the pressure over the half-space, by E*, each under the load of an index [1].
 
-        With the foundation load y(x) beyond that of the half-space over E*,
+        With the excess y(x) of the foundation load over the half-space, by E*,
         y(a)/(pi sqrt(a^2 - r^2)) - (1/pi) int_r^a y'(x)/sqrt(x^2 - r^2) dx,
         x^2 = r^2 + (a^2 - r^2) z^2.
         """

@@ -22,9 +22,9 @@ from mdr_core.typing import Array
 _COUNT, _MORE = 20, 3
 # Knots of the spline between two breaks, an odd number: every second one holds both ends.
 _KNOTS: Final = 801
-# Error of the spline over its difference from one of half as many knots, 1/16 with room.
+# Error of the spline over its difference from one with half the knots: 1/16, with a margin.
 _PART: Final = 0.1
-# Least z: the force there is below rounding error, and the slope still a quotient of two numbers.
+# Smallest z: its force is below rounding error, but its slope is still a quotient of two numbers.
 _LEAST: Final = 1e-8
 
 
@@ -32,9 +32,9 @@ _LEAST: Final = 1e-8
 class DepthCurve:
     """Force and stiffness over E* as functions of the depth.
 
-    Depth, force and stiffness over those of a half-space with the same contact coordinate s are
-    polynomials in z between breaks, s = low + (high - low) z^2. A spline in the z of the depth,
-    defined alike, takes the force from depth to depth.
+    The ratios of depth, force and stiffness to a half-space with the contact coordinate s are
+    polynomials in z between breaks, s = low + (high - low) z^2. A spline gives the force in terms
+    of the z of the depth, defined in the same way.
     """
 
     profile: Profile
@@ -69,7 +69,7 @@ class DepthCurve:
         s = edges[:-1] + np.diff(edges) * np.square((nodes[:, None] + 1) / 2)
         found = states(self.profile, self.layer, s.ravel())
         own = found.depth, found.force, found.stiffness
-        # Next to the tip a quantity may be zero in double precision; the layer is as a half-space.
+        # Next to the tip a quantity may underflow; the layer then acts as a half-space.
         with np.errstate(divide="ignore", invalid="ignore"):
             ratios = [
                 np.where(of > 0, part.reshape(s.shape) / of, 1.0)
@@ -108,7 +108,7 @@ class DepthCurve:
 
     @property
     def error(self) -> float:
-        """Estimated error by the interpolation, relative to the largest force [1]."""
+        """Estimated error of the interpolation, relative to the largest force [1]."""
         return self._parts[2] + 2 * float(np.abs(self._ratios[-2:]).max())
 
     @cached_property

@@ -1,7 +1,7 @@
 """Integral equation of the contact of any profile with an elastic layer on a rigid base.
 
-The contact of radius a is that of a half-space with the same radius, and a smooth correction v of
-its foundation load, q = E* [g(a) - g(x) + v(x)], v(a) = 0:
+To the contact of radius a with a half-space, a layer adds a smooth correction v of the foundation
+load, q = E* [g(a) - g(x) + v(x)], v(a) = 0:
 
     v(x) = int_0^a [K(x, t) - K(a, t)] q(t)/E* dt,    d = g(a) - int_0^a K(a, t) q(t)/E* dt,
     K(x, t) = (2/(pi h)) s int_0^oo [1 - L(w)] cos(w x/h) cos(w t/h) dw,
@@ -34,7 +34,7 @@ POINTS: Final = 32
 cos(2 w a/h)."""
 # w at which 1 - L is below the rounding error.
 _WAVES: Final = 22.0
-# Least number of polynomials, and ln(1/EPS)/2: K is analytic up to 2h from the real axis.
+# Minimum number of polynomials, and ln(1/EPS)/2: K is analytic up to 2h from the real axis.
 _LEAST, _DIGITS = 16, 18.4
 
 
@@ -92,7 +92,7 @@ def states(profile: Profile, layer: Layer, coordinate: Array) -> States:
 def _block(
     profile: Profile, layer: Layer, coordinate: Array, a: Array, count: int, largest: float
 ) -> States:
-    """Contacts of radii a with so many polynomials, for radii up to `largest` times h."""
+    """Contacts of radii a with `count` polynomials, for radii up to `largest` times h."""
     modes = np.arange(count)
     part = a / layer.thickness
     angle = angles(count)
@@ -113,7 +113,7 @@ def _block(
     growth = punch @ rise + q1 * (kernel[:, -1, -1] + _dot(edge, moved))
     condition = stiffness / where(a > 0, 2 * a, 1.0) + 0 * part
     if profile.is_flat_punch:
-        # The contact coordinate of a flat punch, whose radii may be one for each contact.
+        # The contact coordinate of a flat punch is its depth; each contact may have its own radius.
         depth = coordinate
         force, correction = depth * stiffness, depth[:, None] * (punch - 1)
         weights = depth[:, None] * whole
@@ -187,7 +187,7 @@ class Range(NamedTuple):
 
 
 def allowed(profile: Profile, layer: Layer) -> Range:
-    """Contact radii up to the end of the profile and to the largest part of the thickness."""
+    """Contact radii up to the end of the profile and to `LARGEST` times the thickness."""
     reach = LARGEST * layer.thickness
     if profile.domain <= reach:
         return Range(float(profile.domain), profile.end)

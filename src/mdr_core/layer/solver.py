@@ -20,7 +20,8 @@ from mdr_core.normal import CONTROLS
 from mdr_core.profiles import Profile
 from mdr_core.typing import Array
 
-# Contact radius at a depth over that of a half-space, at most: 2 of a thin incompressible layer.
+# Upper bound of the ratio of contact radii on layer and half-space at the same depth. It is 2 for a
+# thin incompressible layer.
 _DEEPER: Final = 4.0
 
 
@@ -50,7 +51,7 @@ def solve(
 
     Examples
     --------
-    A gel of the thickness 4 um on glass is 2.5 times as stiff as a half-space at this depth.
+    A gel of thickness 4 um on glass is 2.5 times as stiff as a half-space at this depth.
 
     >>> from mdr_core.materials import from_bodies, Body, RIGID
     >>> from mdr_core.profiles import Paraboloid

@@ -157,7 +157,7 @@ class Profile(ABC):
     def infinite_pressure_radii(self) -> tuple[Parameter, ...]:
         """Radii at which the pressure of every contact that contains them is infinite [length].
 
-        By default that of a sharp tip.
+        By default 0 for a sharp tip.
         A sweep has one radius for each case, infinite for a case that has none.
         """
         sharp = where(self.tip_pressure > 0, 0.0, inf)

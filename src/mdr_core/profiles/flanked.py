@@ -13,7 +13,7 @@ from mdr_core.typing import Array, Parameter
 
 def slope_of_half_angle(half_angle: float) -> float:
     """Return the slope tan(90 - half_angle) [1] of a flank at this angle to the axis [degree]."""
-    # Either tangent is that of an angle without a rounding error of its own.
+    # Neither angle has a rounding error: 90 - half_angle is exact above 45.
     return tan(radians(90 - half_angle)) if half_angle > 45 else 1 / tan(radians(half_angle))
 
 

@@ -18,7 +18,7 @@ class Hyperboloid(Profile):
 
     Parameters
     ----------
-    slope : t of the asymptotic cone [1].
+    slope : slope t of the asymptotic cone [1].
     tip_radius : radius of curvature R at the tip [length].
     """
 

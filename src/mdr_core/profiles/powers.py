@@ -86,7 +86,7 @@ class Cone(PowerLaw):
 
     Parameters
     ----------
-    slope : t = tan(theta) of the flank against the plane [1].
+    slope : slope t = tan(theta) of the flank against the plane [1].
     """
 
     slope: Parameter
@@ -173,7 +173,7 @@ class Paraboloid(PowerLaw):
     def coefficient(self) -> Parameter:  # type: ignore[override]  # a field of other powers
         return 1 / (2 * self.radius)
 
-    # Millions of contacts are of this kind: what they need is written without powers.
+    # Millions of contacts are of this kind, so their formulas avoid the slower powers.
 
     def g(self, x: Array) -> Array:
         return x * x / self.radius

@@ -28,7 +28,7 @@ class SphericalTipCone(TippedCone):
 
     Parameters
     ----------
-    slope : t of the cone [1].
+    slope : slope t of the cone [1].
     tip_radius : R [length].
     """
 

@@ -36,8 +36,8 @@ class Tabulated(Profile):
     """The smoothest admissible profile through the points of a table, never extrapolated.
 
     The equivalent profile has a slope g' >= 0 that is a spline, with the closed images of jumps of
-    slope and curvature at declared breaks. Heights with many digits are met. From noise, rounding
-    or steps of an instrument the profile deviates by no more than their scatter, which is estimated
+    slope and curvature at declared breaks. Heights with many digits are met. From heights with
+    noise, rounding or steps the profile deviates by no more than their scatter, which is estimated
     from the points unless it is given.
 
     Parameters
@@ -206,7 +206,7 @@ class Tabulated(Profile):
 
     def _slope_integral(self, density: Callable[[Array], Array], coordinate: Array) -> Array:
         """int_0^a density(x) g'(x) dx, by Gauss's rule on each piece."""
-        # Halves of the last radius, so that 1/x is smooth on a piece.
+        # Successive halves of the last radius as edges, so that 1/x is smooth on a piece.
         a, halves = np.ravel(coordinate), self.domain / 2.0 ** np.arange(1, -np.log2(EPS))
         edges = np.union1d(self._edges, halves)
         piece = edges[1:-1].searchsorted(a, side="right")
@@ -292,7 +292,7 @@ class Tabulated(Profile):
         x = edges[:-1, None] + np.diff(edges)[:, None] * share[1:]
         x, slope = x.ravel(), self._spline.slope(x.ravel())
         beyond = np.where(x > edges[1], (x * self._spline.slope(x, 1) - slope) / x**3, 0.0)
-        # Where h' > 0 on the axis, the pressure rises by no more than this rounding error.
+        # Where h' > 0 on the axis, the pressure may rise by `_ROUNDING`: notes, §7.
         rise = -np.log(_ROUNDING) / 2 * max(tip, 0.0) * x
         rise += np.maximum.accumulate(np.maximum(beyond, 0.0)) * np.square(x)
         ends = (slope <= 0) | (rise > slope / x)
@@ -331,7 +331,7 @@ def tip_points(
     area = np.array([c * h**2.0 ** (1 - i) for i, c in enumerate(coefficients)]).sum(axis=0)
     bad = np.flatnonzero((np.diff(area) <= 0) | (area[1:] <= 0))
     if bad.size:
-        # At the largest height no other one is left.
+        # Report the next valid height, or the largest one if there is none.
         valid = h[min(bad[-1] + 2, h.size - 1)]
         detail = (
             f"A(h) is not positive and increasing below the height {valid:.4g}: give a lowest "
@@ -342,7 +342,7 @@ def tip_points(
 
 
 def _of_each(function: Callable[..., Array], ends: tuple[Array, ...], radius: Array) -> Array:
-    """Values at radii (m,) of a function of single annuli, those of one annulus together."""
+    """Values at radii (m,) of a function of single annuli, called once for each annulus."""
     if all(end.size == 1 for end in ends):
         return function(*(end.item() for end in ends), radius)
     annuli = np.stack([np.ravel(end) for end in np.broadcast_arrays(*ends)])
@@ -355,7 +355,7 @@ def _of_each(function: Callable[..., Array], ends: tuple[Array, ...], radius: Ar
 
 
 def _checked(r: Array, f: Array) -> tuple[Array, Array]:
-    """Return the points; InputError unless they are some, finite and not all alike."""
+    """Return the points; InputError unless they are finite, differ, and have three radii."""
     for name, values in (("r", r), ("f", f)):
         require_list(("profile", name), values)
         require_finite(("profile", name), values)

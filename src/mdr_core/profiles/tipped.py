@@ -100,7 +100,7 @@ class RoundedCone(TippedCone):
 
     Parameters
     ----------
-    slope : t of the cone [1].
+    slope : slope t of the cone [1].
     tip_radius : radius of curvature R of the tip [length].
     """
 

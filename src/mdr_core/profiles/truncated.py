@@ -153,7 +153,7 @@ class TruncatedCone(Truncated):
     Parameters
     ----------
     flat_radius : b [length].
-    slope : t [1].
+    slope : slope t of the flank [1].
     """
 
     flat_radius: Parameter

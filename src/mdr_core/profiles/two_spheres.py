@@ -12,8 +12,8 @@ from mdr_core.profiles.spheroids import Spheroid
 from mdr_core.typing import Array, Flags, Parameter
 from mdr_core.validation import as_numbers, require_finite
 
-# a/R of the ball beyond which its half-space in a socket is no estimate: the contact covers 62 to
-# 70 degrees of the ball. Source: notes, §8.
+# a/R of the ball beyond which a half-space in a socket is not an estimate: the contact covers 62
+# to 70 degrees of the ball. Source: notes, §8.
 _CONFORMING: Final = 0.85
 # a/R up to which the pressure in a socket falls from the axis: in the limit of equal radii a h'(a)
 # is h(a) at 5^(-1/2) = 0.447, where the sum of (2k + 2)(2k - 1) t^2k from k = 1 on is 2. Source:
@@ -115,12 +115,12 @@ class TwoSpheres(Spheroid):
         return self._artanh_sum(x) + x * rest * ((small + large) / outer)
 
     def _artanh_sum(self, x: Array) -> Array:
-        """artanh(x/R_1) + artanh(x/R_2) as one logarithm, which cancels in no socket [1]."""
+        """artanh(x/R_1) + artanh(x/R_2) as one logarithm, free of cancellation [1]."""
         small, large = self.radius, self.other
         return 0.5 * np.log1p(2 * x * ((small + large) / ((small - x) * (large - x))))
 
     def reduced_force(self, coordinate: Array) -> Array:
-        """2 int_0^a x g'(x) dx, because closed forms cancel in a socket. See `Profile`."""
+        """2 int_0^a x g'(x) dx, because closed forms suffer cancellation. See `Profile`."""
         return self._integral(lambda x: 2 * x * self.dg(x), coordinate)
 
     def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:

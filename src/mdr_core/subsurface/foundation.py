@@ -33,11 +33,11 @@ from mdr_core.validation import require_representable, require_type
 
 Contact: TypeAlias = NormalContact | TangentialContact | ContactState
 
-# Least distance of a far singularity from the middle of a block in x^2, over its length:
+# Smallest distance of a far singularity from the middle of a block in x^2, over its length:
 # interpolation errs by 5^-n.
 _FAR: Final = 1.3
 _AT: Final = gauss_legendre(NODES)[0]
-# From the values of Legendre polynomials to those of Lagrange's at the nodes.
+# From values of Legendre polynomials to values of Lagrange's polynomials at the nodes.
 _TO_NODES: Final = np.linalg.inv(legendre.legvander(_AT, NODES - 1))
 
 
@@ -62,11 +62,11 @@ class Foundation:
         self.friction = (1 if body == 2 else -1) * load.modulus / load.e_star
         """mu, with the sign of the traction on the body [1]."""
         self._slope = self.friction * load.slope
-        # Least radius at which q_x has a slope, infinite if it has none.
+        # Smallest radius at which q_x has a slope, infinite if it has none.
         self.slips_from = load.radius[:-1][load.slope != 0].min(initial=inf)
         self.sheared = bool(self.slips_from < inf)
         self.loaded = bool(load.coordinate[-1] > 0)
-        # The kernel 1/rho^3 is a double.
+        # The kernel 1/rho^3 must be representable.
         require_representable(("profile",), np.asarray(self.loaded), load.radius[-1] ** 3)
         radii = map(float, profile.infinite_pressure_radii)
         self.infinite_radii = [b for b in radii if self.loaded and b <= load.radius[-1]]

@@ -96,8 +96,8 @@ def stress(
 
     Raises
     ------
-    InputError : a coordinate that is not finite, a negative depth, another body, or a Poisson's
-        ratio out of range.
+    InputError : a coordinate that is not finite, a negative depth, a body other than 1 or 2, or a
+        Poisson's ratio out of range.
 
     Examples
     --------
@@ -177,7 +177,7 @@ def error_estimate(contact: Contact, x: ArrayLike, y: ArrayLike, z: ArrayLike) -
     """Return a bound on the error of the stresses at points, relative to the largest of them [1].
 
     It contains rounding errors, and the error of a contact radius or slip front that follows from
-    a load, near which stresses change like a root. That of a load history itself is left out.
+    a load, near which stresses change like a root. The error of a load history is left out.
 
     Parameters
     ----------

@@ -31,8 +31,8 @@ from mdr_core.validity import Finding, infinite_deviator
 # Radii, and depths per e-fold, of a grid. The radii cluster at the axis, the edges and the breaks;
 # the depths lie between these parts of the contact radius.
 _RADII, _PER_E_FOLD, _SHALLOWEST, _DEEPEST = 24, 2, 1e-4, 2.0
-# Points of the spline through the grid over those of the grid; part of the highest stress that its
-# peaks reach if they are climbed.
+# Points of the spline per point of the grid; part of the highest stress above which its peaks are
+# refined.
 _FINER, _ALMOST = 4, 0.8
 # Directions of the grid if there is friction: it may lift a peak out of the plane y = 0.
 _ANGLES: Final = np.linspace(0, np.pi / 2, 4)
@@ -81,7 +81,7 @@ def largest(
 
     Raises
     ------
-    InputError : another measure or body, or a Poisson's ratio out of range.
+    InputError : an unknown measure or body, or a Poisson's ratio out of range.
     AccuracyError : the contact extends beyond a flat by less than 5e-13 of its radius.
     """
     _require_measure(measure)
@@ -117,7 +117,7 @@ def yield_onset_force(
 
     Raises
     ------
-    InputError : another measure, no load, or a yield strength that is not positive.
+    InputError : an unknown measure, no load, or a yield strength that is not positive.
     AccuracyError : see `largest`.
     """
     require_single_positive(("yield_strength",), yield_strength)
@@ -141,9 +141,9 @@ def yield_finding(
 ) -> Finding:
     """Return `yield`: loads under which a body has yielded by Tresca's criterion.
 
-    `yield_strength` is that of the softer body [pressure]. Poisson's ratio 0.3 is assumed if none
+    `yield_strength` is for the softer body [pressure]. Poisson's ratio 0.3 is assumed if none
     are known. Along a load history the forces of every sample count as applied once; at its end
-    the traction is that of the path. Source: johnson, section 4.2; notes, §12.
+    the traction follows from the path. Source: johnson, section 4.2; notes, §12.
     """
     ratios, pressed = poissons_ratios or (ASSUMED_RATIO,), contact.normal
     profile, (columns, shape) = pressed.profile, _columns(contact)
@@ -215,7 +215,7 @@ def _under(profile: Profile, *case: float) -> tangential.TangentialContact:
 def _onset(
     profile: Profile, case: list[float], measure: str, limit: float, nu: float, body: int
 ) -> float:
-    """Normal force at which the largest stress is `limit`, in the ratio of the forces of a case.
+    """Normal force at which the largest stress is `limit`, at the ratio of the forces of a case.
 
     Secant steps in the logarithms, which are nearly in proportion, and bisections where they leave
     the bracket. The error after two secant steps is of the order of their product.
@@ -321,7 +321,7 @@ def _peak(
     high = (fine == maximum_filter(fine, 3)) & (fine >= _ALMOST * values.max())
     # One direction stands for all on the axis, and for both beside the plane of the load.
     high[1:, r == 0] = high[len(_ANGLES) - 1 :, r < 0] = False
-    # The spline waves beside the cusp at the edge of a sliding contact, and may hide it.
+    # The spline oscillates beside the cusp at the edge of a sliding contact, and may hide it.
     at = np.unravel_index(values.argmax(), values.shape)
     high[at[0], _FINER * at[1], _FINER * at[2]] = True
     k, i, j = np.nonzero(high)

@@ -103,7 +103,7 @@ class VirginCurves:
             self._rise[:, pressed] = weight.reshape(NODES, -1, edge.size) * self.length[pressed]
 
     def place(self, along: Array, at: Any = _ALL) -> tuple[Array, Array]:
-        """Return x and sqrt(x^2 - b^2) of places."""
+        """Return x and sqrt(x^2 - b^2) at places along the pieces."""
         base, angle = self.base[at], np.maximum(self._angle[at] - along, 0.0)
         s = np.where(base > 0, base * np.sinh(angle), self._top[at] * np.exp(-along))
         return np.hypot(base, s), s
@@ -161,7 +161,7 @@ class VirginCurves:
         return gains, weights * y * y * s
 
     def _gain(self, along: Array, at: tuple[Indices, Indices]) -> tuple[Array, Array]:
-        """Increase of P from the top of a piece to a place, and its derivative by the distance."""
+        """Increase of P from the top of a piece to a place, and its derivative in the distance."""
         share, series = along / self.length[at], self._resolved[2][:, :, *at]
         rate, change = chebyshev.chebval(2 * share - 1, series, tensor=False)
         return along * rate, rate + share * change

@@ -19,14 +19,14 @@ from mdr_core.doubles import EPS, TINY
 from mdr_core.quadrature import piecewise_rule
 from mdr_core.typing import Array, Indices
 
-# Grading of the nodes, by trial (notes, §11): the distance from the stick edge grows by about
-# exp(STRETCH) over the nodes, without which the errors are 100 to 10,000 times larger ...
+# The distance of the nodes from the stick edge grows by about exp(STRETCH); errors are 100 to
+# 10,000 times larger without this grading. Both constants by trial: notes, §11.
 STRETCH: Final = 5.0
-# ... and the last part 1/EDGE of b^2 next to the contact's edge has separate nodes, without which
-# that of the volume is 30 to 40 times larger.
+# The last part 1/EDGE of b^2, next to the contact's edge, has separate nodes; the error of the
+# volume is 30 to 40 times larger without them.
 EDGE: Final = 50.0
 # Nodes of a local polynomial: with six the error at 48 nodes is 10 times larger, with ten the same.
-# As many Gauss points between two nodes integrate it times a smooth factor.
+# As many Gauss points between two nodes integrate the polynomial times a smooth factor.
 _STENCIL: Final = 8
 
 

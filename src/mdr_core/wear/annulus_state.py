@@ -16,7 +16,7 @@ from mdr_core.doubles import TINY
 from mdr_core.typing import Array
 from mdr_core.wear.initial_state import TILT_TERMS, InitialState
 
-# The tilt's points, the map from values there to its terms, and from terms to those of its slope.
+# The tilt's points, and the maps from its values there to its terms and on to terms of its slope.
 _ORDERS: Final = np.arange(TILT_TERMS)[:, None]
 _POINTS: Final = chebyshev.chebpts1(TILT_TERMS)[:, None]
 _TO_SERIES: Final = np.linalg.inv(chebyshev.chebvander(_POINTS[:, 0], TILT_TERMS - 1))
@@ -52,7 +52,7 @@ class AnnulusState:
     def retained_wear(self) -> Array:
         """w_c = g(c) - g_0(c): wear that the springs keep when a growing stick zone gets there.
 
-        Where it does not grow, d - d_0.
+        It is d - d_0 if the stick zone does not grow.
         """
         return self._numbers[1][2]
 
@@ -148,7 +148,7 @@ class AnnulusState:
 
     @cached_property
     def worn_omega(self) -> Array:
-        """omega without that of the unworn shape."""
+        """omega minus its value for the unworn shape."""
         return np.asarray(self.initial.maps.from_slip @ self.worn)
 
     @cached_property

@@ -59,14 +59,14 @@ SCALARS: Final = (
 
 # Nodes beyond `resolution`: fewer than 16 can be unstable at the stick edge.
 _EXTRA_NODES: Final = 16
-# Nodes of the second run of the error estimates, as a part of those of the first.
+# Nodes of the second run of the error estimates, over the nodes of the first.
 _COARSER: Final = 2 / 3
-# Tolerance of the second run over that of the first.
+# Tolerance of the second run over the tolerance of the first.
 _LOOSER: Final = 4.0
 # Factor of the difference in an estimate of a scalar, whose error is at most 0.8 times the
 # difference where it falls like 1/resolution^2.
 _SAFETY: Final = 2.0
-# Factor for a field: the thin peak of the pressure next to a moving stick edge falls more slowly.
+# Factor for a field: its error falls more slowly in the thin pressure peak at a moving stick edge.
 _OF_FIELDS: Final = 4.0
 # Factor beside a break, where both runs may err alike.
 _AT_BREAKS: Final = 10.0
@@ -88,11 +88,11 @@ class WearEvolution(validity.ContactResults, WornSurface):
     def error_estimate(self) -> float:
         """Estimate of the relative error of every scalar [1].
 
-        Twice the difference from a run on two thirds of the nodes with a looser integrator, the
-        tolerance of that, and the rounding error of the contact before wear. With a break of the
+        Twice the difference from a run on two thirds of the nodes with a looser integrator, its
+        tolerance, and the rounding error of the contact before wear. With a break of the
         profile in the worn annulus both runs may err alike: there their absolute difference counts,
         and the error of the wear in the first cycle, whose friction work is known.
-        The error of a normal force that wear takes away in full slip is relative to the one before.
+        In full slip the error of the normal force is relative to the force before wear.
         """
         worst = self._absolute_difference if self._has_break else 0.0
         for name in SCALARS:
@@ -106,7 +106,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
     @property
     def _first_cycle_error(self) -> float:
-        """Relative error of the wear in the first cycle, by its friction work [1]."""
+        """Relative error of the wear in the first cycle, from its friction work [1]."""
         initial = self.initial
         state = AnnulusState(initial, initial.vector[:, None])
         slipped = 2 * np.pi * state.end**3 * (initial.maps.volume @ (state.stress * state.slip))
@@ -116,7 +116,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
 
     @property
     def _whole_force(self) -> Array:
-        """Normal force, in full slip that before wear [force]."""
+        """Normal force; in full slip, its value before wear [force]."""
         if self.initial.full_slip:
             return np.full(self.cycles.shape, float(self.normal.normal_force))
         return self.normal_force
@@ -189,7 +189,7 @@ class WearEvolution(validity.ContactResults, WornSurface):
         """Return radii from 0 to a quarter beyond the largest contact [length], (points,).
 
         They cluster at the axis, the breaks, the first and the last contact radius, and a stick
-        radius at rest; one that moves has an error. Errors as for `limit.LimitingWear.grid`.
+        radius at rest; a moving stick radius has an error. Errors as for `limit.LimitingWear.grid`.
         """
         edges = self.contact_radius[[0, -1]]
         if not self.initial.stick_moves:
@@ -251,8 +251,8 @@ def solve(
 
     df/dN = K mu p(r) S(r), S = 4 |s(r)|: the wear of a cycle is proportional to its friction work
     at each place, so that dV/dN = K W. The depth or the normal force of the contact, whichever
-    was prescribed, and the amplitude are held constant. A displacement amplitude may exceed that of
-    full slip: the whole contact wears.
+    was prescribed, and the amplitude are held constant. The whole contact wears if a displacement
+    amplitude exceeds the onset of full slip.
 
     Source: mdr-5, Problem 6; dimaki, the wear law; notes, §11.
 

@@ -17,14 +17,14 @@ from mdr_core.typing import Array
 from mdr_core.wear.annulus_maps import AnnulusMaps, annulus_maps
 from mdr_core.wear.worn_annulus import ALMOST
 
-# Widths by which the contact may grow at c = a; it carries the force on less where c is small. The
-# contact of a paraboloid grows by half a width, that of a power 100 by less.
+# Growth limit of the contact in widths at c = a; it carries the force on less where c is small.
+# The contact of a paraboloid grows by half a width, of a power 100 by less.
 _GROWTH: Final = 4.0
 # Chebyshev terms of the tilt: the branch point of its arccosine lies a quarter of the interval
 # before it, so that 16 terms resolve it to (3/2 + sqrt(5)/2)^-16 = 2e-7.
 TILT_TERMS: Final = 16
-# Largest slope of g_0 [D_0/b_0]: it is infinite at a jump of f', and no edge would pass it. Larger
-# ones are those within 1e-10 of the jump.
+# Largest slope of g_0 [D_0/b_0]: it is infinite at a jump of f', and no edge would pass it. Slopes
+# are larger only within 1e-10 of the jump.
 _STEEPEST: Final = 1e5
 
 
@@ -48,7 +48,7 @@ class InitialState:
 
     @cached_property
     def constant_force(self) -> bool:
-        """True if the normal force is constant, so that the depth grows; otherwise the depth is."""
+        """True if the normal force is constant and the depth grows; false for a constant depth."""
         return self.normal.control == "normal_force"
 
     @cached_property
@@ -58,9 +58,9 @@ class InitialState:
 
     @cached_property
     def constant_displacement(self) -> bool:
-        """True if the displacement amplitude is constant, and with it D; otherwise the force's.
+        """True if the displacement amplitude, and D, is constant; false if the force amplitude is.
 
-        In full slip d is constant in the place of D, unless the normal force is.
+        In full slip d is constant instead of D, unless the normal force is constant.
         """
         if self.full_slip:
             return not self.constant_force
@@ -94,7 +94,7 @@ class InitialState:
 
     @cached_property
     def step(self) -> float:
-        """gamma(a) before wear [length]: that of full slip is the depth."""
+        """gamma(a) before wear [length]; the depth in full slip."""
         return float(self.normal.indentation_depth) if self.full_slip else self.depth_unit
 
     @cached_property
@@ -136,8 +136,8 @@ class InitialState:
     def maps(self) -> AnnulusMaps:
         """Maps between values at the nodes.
 
-        A shrinking stick zone takes half as many again: the layer outside it is eight times thinner
-        than its distance from the edge, elsewhere both are alike. Source: notes, §11.
+        A shrinking stick zone has half as many again: the layer outside it is eight times thinner
+        than its distance from the edge, but as thick in other cases. Source: notes, §11.
         """
         nodes = self.nodes * 3 // 2 if self.stick_shrinks else self.nodes
         return annulus_maps(nodes, full_slip=self.full_slip)

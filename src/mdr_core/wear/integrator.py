@@ -15,19 +15,19 @@ from mdr_core.wear.initial_state import InitialState
 from mdr_core.wear.rates import jacobian, rates
 from mdr_core.wear.worn_surface import WornSurface
 
-# Absolute tolerance, as a part of `rtol` times the wear by the first cycles. A larger one leaves
-# errors of the pressure above that at which wear counts as ended.
+# Absolute tolerance, over `rtol` times the wear of the first cycles. A larger one leaves errors
+# above the pressure at which wear counts as ended.
 _ABSOLUTE: Final = 0.01
-# Part of the largest slip up to which the tolerance of the slip is a part of itself: where there is
-# less, a growing stick zone takes it back before it counts.
+# Slip over the largest slip, down to which the tolerance is relative to the slip itself. A growing
+# stick zone erases smaller slip before it matters.
 _LEAST_SLIP: Final = 0.01
 # Scaled cycles below which the integrator's first step underflows.
 _FIRST: Final = 1e-100
 # Relative distance at which an edge has reached a place: a slope jump, or the flat or the axis,
 # where full slip begins.
 _REACHED: Final = 1e-3
-# Most evaluations of the rates, three seconds. A constant depth with a constant force amplitude
-# takes up to 7,500 at a tolerance of 1e-9, the equator of a sphere 4,700.
+# Maximum number of rate evaluations, three seconds. A constant depth and a constant force amplitude
+# take up to 7,500 at a tolerance of 1e-9, the equator of a sphere 4,700.
 _MAX_CALLS: Final = 10_000
 # Largest tolerance times the square of the number of nodes, by which the pressure amplifies errors
 # of the wear: from about 0.6 on it may turn negative, and the steps stall.
@@ -37,8 +37,8 @@ _LOOSEST: Final = 0.2
 def integrate(initial: InitialState, cycles: Array, rtol: float) -> WornSurface:
     """Return the worn contact at ascending numbers of cycles, and when wear stopped.
 
-    That is infinite if it is not reached. The pressure in the annulus decays within some units of
-    scaled cycles. Once it is below `rtol` everywhere, the state stays as it is. Source: notes, §11.
+    This number is infinite if wear goes on. The pressure in the annulus decays within a few units
+    of scaled cycles. Once it is below `rtol` everywhere, the state is constant. Source: notes, §11.
 
     Raises InputError if the contact reaches the end of the profile, or full slip begins or ends,
     and AccuracyError if the integrator fails or takes too many steps, or the contact grows too far.
@@ -145,14 +145,14 @@ def _require_all_cycles(
 
 
 def _scale(initial: InitialState) -> Array:
-    """Return the sizes of the changes of the vector by wear."""
+    """Return the sizes of the changes of the vector due to wear."""
     inner = initial.maps.squares.size - 1
     slip = AnnulusState(initial, initial.vector[:, None]).slip[:-1] / initial.units[:inner]
     found = np.full(initial.units.size, initial.length_unit / float(initial.normal.contact_radius))
     found[:inner] = np.maximum(slip[:, 0], _LEAST_SLIP)
     # In full slip the depth that can wear off is a part of the slip.
     found *= initial.step / initial.depth_unit
-    # In a narrow annulus all but b change by a part b_0/a_0 only.
+    # In a narrow annulus only b changes as a whole, the others by the fraction b_0/a_0.
     found[inner] = 1.0
     return found
 

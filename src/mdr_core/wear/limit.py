@@ -28,10 +28,10 @@ from mdr_core.validation import (
 from mdr_core.wear import limiting_stick, worn_annulus
 from mdr_core.wear.arguments import grid, one_amplitude
 
-# Exponent of the slip width in the worn volume, with room.
+# Upper bound of the exponent of the slip width in the worn volume.
 _OF_VOLUME: Final = 3.0
-# Least of the largest worn depth over (2/pi) (d - g(c)) arccos(c/r) at the outer edge: 0.38 of a
-# narrow annulus.
+# Lower bound of the largest worn depth over (2/pi) (d - g(c)) arccos(c/r) at the outer edge; the
+# ratio is 0.38 for a narrow annulus.
 _HIGHEST: Final = 0.2
 _WARNINGS: Final = {
     "path_dependent": "with a constant normal force and displacement amplitude the depth grows, "
@@ -201,7 +201,7 @@ class LimitingWear(validity.ContactResults):
             which, at, inner = load[block], r[place[block]], c[load[block], 0]
             lag = profile.slip_integral(inner, at)
             share = np.where(at > 0, 2 / np.pi * worn_annulus.angle(inner, at - inner), 1.0)
-            # At the outer edge of the annulus the terms cancel but for rounding error.
+            # At the outer edge of the annulus the terms cancel except for rounding error.
             result[which, place[block]] = np.maximum(share * step[which, 0] - lag, 0.0)
         return result.reshape(self.wear_radius.shape + r.shape)
 
@@ -254,12 +254,12 @@ class LimitingWear(validity.ContactResults):
         lost = float(self.edge_rounding.max(initial=0.0))
         if CONTROLS[contact.control] == contact.normal.control:
             return contact.error_estimate + lost
-        # The stick radius before wear, which may be that of the onset of full slip, has no part.
+        # The stick radius before wear has no effect, not even at the onset of full slip.
         return extremes(contact.step_error + _OF_VOLUME * width_error)[1] + lost
 
     @property
     def edge_rounding(self) -> Array:
-        """Relative error of the worn volumes by the distance of c from a flat or a jump, (loads,).
+        """Relative error of the worn volumes for c next to a flat or a slope jump, (loads,).
 
         The slope of g has a root or a pole there, and the distance is a difference of radii.
         """
@@ -275,7 +275,7 @@ class LimitingWear(validity.ContactResults):
         return np.asarray(_OF_VOLUME * rounding)
 
     def field_error_estimate(self, radius: ArrayLike, quantities: Iterable[str]) -> float:
-        """Return the error of fields by that of the stick radius [1].
+        """Return the error of fields due to the error of the stick radius [1].
 
         It is relative to the largest worn depth, and to each value of the pressure, which is
         infinite at the stick radius. Radii within four units in the last place of it are excluded.
@@ -292,7 +292,7 @@ class LimitingWear(validity.ContactResults):
         product = np.where((away <= ADJACENT * c) | (step <= 0), inf, away * (r + c))
         found, error = [0.0], error + EPS * c
         if "pressure" in names:
-            # 1/sqrt(c - r) changes by no more, and up to all of it where c may be either side of r.
+            # Bound of the relative change of 1/sqrt(c - r); infinite where c may pass r.
             changes = error / np.where(product < inf, away, inf)
             found.append(np.max(np.where(r < c + error, changes, 0.0)))
         if names & {"worn_depth", "limiting_profile"}:
@@ -306,7 +306,7 @@ class LimitingWear(validity.ContactResults):
     def warnings_without_bodies(self) -> tuple[Notice, ...]:
         """Warnings that do not depend on the bodies.
 
-        Of the limit: `path_dependent`, `singular`, `no_wear`, `contact_lost`, `endless_wear`.
+        Codes: `path_dependent`, `singular`, `no_wear`, `contact_lost`, `endless_wear`.
         """
         wears = self.stick_zone.step > 0
         controls = self.normal.control, self.tangential_contact.control

@@ -140,8 +140,8 @@ def _first_crossing(
 ) -> tuple[Array, Array]:
     """Return the ends of the first interval of [0, widest] in which a function reaches a target.
 
-    Where it does not, they enclose its largest value. For a profile with a slope discontinuity the
-    function can rise, fall and rise again.
+    If the function does not, they enclose its largest value. For a profile with a slope
+    discontinuity the function can rise, fall and rise again.
     """
     low, high = np.zeros_like(widest), widest
     for _ in range(_ROUNDS):
@@ -184,10 +184,9 @@ def _from(
     unbounded: Flags | bool = False,
     moved: tuple[Array, Array] | None = None,
 ) -> LimitingStick:
-    """Return the stick zone before wear.
+    """Return the stick zone before wear, or after it has moved.
 
-    Or, if it has moved, the one at a slip width in the contact coordinate, with the relative error
-    of that.
+    `moved` is the new slip width in the contact coordinate, and its relative error.
     """
     normal, slides = contact.normal, separated | unbounded
     if moved is None:

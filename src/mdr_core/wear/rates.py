@@ -1,7 +1,7 @@
 """Rates of change of the worn annulus with the number of cycles.
 
-All rates are linear in those of the edges, b' = db/dN, c' and d': each is a set of four rates,
-times (1, b', c', d'). The edges follow from what holds at all times:
+All rates are linear in the rates b' = db/dN, c' and d' of edges and depth: each is four numbers
+times (1, b', c', d'). The edges follow from identities that hold at all times:
 
     gamma(a) = D, and d in full slip,
     int_0^a (d - g) dx is constant under a constant normal force,
@@ -23,7 +23,7 @@ from mdr_core.typing import Array
 from mdr_core.wear.annulus_state import AnnulusState
 from mdr_core.wear.initial_state import InitialState
 
-# A rate by wear alone, and per unit of the rates of b, c and w_c, or d.
+# Parts of a rate: due to wear alone, and per unit of the rates of b, of c, and of w_c or d.
 _WEAR, _END, _STICK, _RETAINED = range(4)
 # Rate at which the integrator's errors of gamma(a) - D, and of the force in full slip, decay: fast
 # beside the wear, whose unit is 1, and slow beside the steps of the first cycles. By trial, rates
@@ -32,16 +32,16 @@ _RETURN: Final = 10.0
 
 
 def rates(initial: InitialState, vector: Array) -> Array:
-    """Return the derivative of vectors by the scaled number of cycles, (n,) or (n, k)."""
+    """Return the derivative of vectors in the scaled number of cycles, (n,) or (n, k)."""
     found = _MovingAnnulus(initial, vector.reshape(len(vector), -1)).rates
     return found.reshape(vector.shape)
 
 
 def jacobian(initial: InitialState, vector: Array) -> Array:
-    """Return the derivative of the rates by the vector, for Newton's method, (n, n).
+    """Return the derivative of the rates in the vector, for Newton's method, (n, n).
 
-    By the worn depth exactly, by the edges from differences; the tilt's effect on the edges'
-    rates is neglected.
+    It is exact in the worn depth, and a difference quotient in the edges; the effect of the tilt on
+    the rates of the edges is neglected.
     """
     state = _MovingAnnulus(initial, vector[:, None])
     inner = initial.maps.squares.size - 1
@@ -84,7 +84,7 @@ class _MovingAnnulus(AnnulusState):
 
         Material outside a shrinking stick zone has worn exponentially with its distance from the
         edge, so that v differs by orders of magnitude between neighbours. The slope of ln(v/z)
-        keeps v positive there; that of v overshoots where the layer is thin.
+        keeps v positive there; the slope of v overshoots where the layer is thin.
         """
         if not self.initial.stick_shrinks:
             return np.asarray(slope @ self.worn)
@@ -104,7 +104,7 @@ class _MovingAnnulus(AnnulusState):
     def worn_rates(self) -> Array:
         """Rates of `worn` at nodes that move with the edges, (4, n, k).
 
-        With s^2 = r^2 - c^2 = b^2 z the slip beyond that of the unworn shape is s worn. At a place
+        With s^2 = r^2 - c^2 = b^2 z the slip in excess of the unworn shape is s worn. At a place
         r it grows by p sigma - (2/pi) arccos(c/r) w_c'. A node keeps its z: r r' = c c' + z b b',
         so that
 
@@ -144,7 +144,7 @@ class _MovingAnnulus(AnnulusState):
         return found
 
     def _solve(self, right: Array) -> Array:
-        """Rates of the moving edges at which the conditions stay met, by their other terms."""
+        """Rates of the moving edges that keep the conditions met, given their other terms."""
         conditions = self.conditions[:, self.moving].transpose(2, 0, 1)
         try:
             return np.asarray(-np.linalg.solve(conditions, right))
@@ -164,7 +164,7 @@ class _MovingAnnulus(AnnulusState):
 
     @cached_property
     def conditions(self) -> Array:
-        """Rates that are zero, of depths, for each edge that moves, (m, 4, k)."""
+        """Rates of depths that must be zero, one for each edge that moves, (m, 4, k)."""
         rows = [self._outer_edge]
         if self.initial.constant_force or self.initial.stick_shrinks:
             rows.append(self._carried_force / self.initial.length_unit)
@@ -194,7 +194,7 @@ class _MovingAnnulus(AnnulusState):
 
     @property
     def _outer_edge(self) -> Array:
-        """Rate of gamma(a) - D, with the return of its error.
+        """Rate of gamma(a) - D, plus a term that drives its error to zero.
 
         As gamma = x omega, it is a omega(a)' + a' omega(a) - D' + RETURN (gamma(a) - D).
         """
@@ -211,7 +211,7 @@ class _MovingAnnulus(AnnulusState):
     def _carried_force(self) -> Array:
         """Rate of the integral of the loads, normal or, where the stick zone shrinks, tangential.
 
-        The integral of gamma_0 changes at its ends only: by values at nodes it would jump where one
+        The integral of gamma_0 changes at its ends only: a sum over nodes would jump when a node
         passes a break of the slope.
         """
         initial, maps, a, b, c = (
@@ -235,7 +235,7 @@ class _MovingAnnulus(AnnulusState):
         return -rate
 
     def gradients(self) -> tuple[Array, Array]:
-        """Return the gradients by `worn`, of its rates (n, n) and of the velocity (4, n).
+        """Return the gradients in `worn`, of its rates (n, n) and of the velocity (4, n).
 
         The state must be a single one.
         """

@@ -17,7 +17,7 @@ from mdr_core.profiles import Profile
 from mdr_core.quadrature import NODES, composite_rule
 from mdr_core.typing import Array
 
-# As near to the end of a profile as its functions are evaluated: they may be infinite there.
+# Largest radius over the end of a profile: its functions may be infinite at the end itself.
 ALMOST: Final = 1 - 1e-9
 
 
@@ -29,7 +29,7 @@ def angle(stick: Array, width: Array) -> Array:
 def worn_volume(profile: Profile, stick: Array, width: Array, step: Array) -> Array:
     """Return 4 int_c^r (d - g(x)) sqrt(r^2 - x^2) dx = 2 pi int_c^r h r dr [length^3].
 
-    At the outer edge the derivative by the width vanishes with the worn depth h, so that the
+    At the outer edge the derivative in the width vanishes with the worn depth h, so that the
     rounding error of the width has no effect. Source: notes, §9.
 
     Parameters

@@ -21,8 +21,8 @@ class WornSurface(AnnulusState):
     """Worn contact at each number of cycles: scalars (cycles,) and fields (cycles, radii)."""
 
     trail: Array
-    """Radii c that a growing stick zone has passed, and the wear w_c that the springs keep there;
-    the last of them is the stick edge. Shape (2, k, cycles)."""
+    """Radii c that a growing stick zone has passed, up to the stick edge, and the wear w_c that the
+    springs keep there. Shape (2, k, cycles)."""
     settled_at: float = field(default=inf, kw_only=True)
     """Number of cycles after which wear has stopped."""
     cycles: Array = field(kw_only=True)
@@ -43,7 +43,7 @@ class WornSurface(AnnulusState):
         normal = self.initial.normal
         if self.initial.constant_force or not self.initial.slips:
             return np.full(self.cycles.shape, float(normal.normal_force))
-        # Once nothing touches, rounding errors are left of either sign.
+        # After the loss of contact only rounding errors of either sign remain.
         return np.maximum(2 * float(normal.e_star) * self.force, 0.0)
 
     @cached_property
@@ -78,7 +78,7 @@ class WornSurface(AnnulusState):
         """Return h(r) = f - f_0 [length], (cycles, m), which is never negative and never falls.
 
         Where numerical errors would reduce it from one number of cycles to the next, the earlier
-        depth is returned for both, which is no further from the truth.
+        depth is returned for both, which is not further from the truth.
 
         Raises
         ------
@@ -95,7 +95,7 @@ class WornSurface(AnnulusState):
     def pressure(self, radius: ArrayLike) -> Array:
         """Return p(r) [pressure], (cycles, m). Errors as for `worn_depth`.
 
-        Never negative, zero outside the contact. In the limit it is that of a flat punch of
+        Never negative, zero outside the contact. The limit is the pressure of a flat punch of
         radius c, infinite at c; before, it has a narrow peak there.
 
         Source: mdr-5, Eq. (5.79).
@@ -115,7 +115,7 @@ class WornSurface(AnnulusState):
     def _worn_depth(self, row: int, radius: Array) -> Array:
         """Return h(r) = (sigma - S_0) H(r - c) + (2/pi) int_c0^min(r,c) arccos(x/r) dw_c(x).
 
-        The second term is of the springs that a growing stick zone has passed.
+        The second term belongs to the springs that a growing stick zone has passed.
         Source: mdr-5, Eq. (5.75), integrated by parts; notes, §11.
         """
         result, full_slip = np.zeros(radius.shape), self.initial.full_slip
@@ -142,7 +142,7 @@ class WornSurface(AnnulusState):
         slips = ~sticks & (radius < self.x[-1, row])
         result[slips] = e_star * self._annulus_stress(row, radius[slips])
         if sticks.any():
-            # The pressure of the unworn foundation inside c, and that of the worn one.
+            # The unworn foundation inside c, plus the worn one outside.
             within = normal.solve(contact.profile, e_star, contact_radius=c)
             worn = e_star * self._stick_stress(row, radius[sticks])
             result[sticks] = fields.pressure(within, radius[sticks]) + worn
@@ -159,7 +159,7 @@ class WornSurface(AnnulusState):
         return np.asarray(maps.at(maps.cosine, squares) * maps.at(even, squares))
 
     def _stick_stress(self, row: int, radius: Array) -> Array:
-        """Return the part of p/E* at r < c that is not of the unworn shape inside c.
+        """Return the part of p/E* at r < c beyond that of the unworn shape inside c.
 
         (1/pi) int g'(x)/sqrt(x^2 - r^2) dx over c < x < a, with the step g(c+) - g(c) of a worn
         layer that is too thin for the nodes, and over the worn part of the springs inside c.

@@ -34,7 +34,7 @@ async def _answer(
     form: tuple[str, Appearance],
     members: Sequence[str] = (),
 ) -> Response:
-    """Return the response; a long or unparsed query is answered by a compute process."""
+    """Return the response; a long or unparsed query runs in a compute process."""
     arguments = name, query, *form, members
     if isinstance(query, contacts.Query) and form[0] not in PICTURES and is_short(query):
         content = respond(*arguments)

@@ -144,7 +144,7 @@ def pointing(names: Mapping[str, tuple[str, ...]]) -> Iterator[None]:
 
 
 def plain_result(query: Query, source: Results) -> Result:
-    """Return the quantities of a solution that there are, single numbers as lists of one entry."""
+    """Return the available quantities of a solution, single numbers as lists of one entry."""
     known = {name: value for name, value in source.computed().items() if value is not None}
     return response(query, source, {name: np.atleast_1d(value) for name, value in known.items()})
 
@@ -244,7 +244,7 @@ def response(
     values : members of the response, of which arrays are checked.
     infinite : True for the members, or their entries, that can be infinite.
     method, error : method and error estimate of the values, if they differ from the source.
-    warnings : warnings about the values alone.
+    warnings : warnings beside those of the source.
 
     Raises
     ------
@@ -274,7 +274,7 @@ def response(
 
 
 def _model_errors(source: Any, loads: int) -> Result:
-    """Return the estimates of the error of the model that there are, over the loads."""
+    """Return the available estimates of the error of the model, over the loads."""
     known = {name: np.ravel(getattr(source, name)) for name in MODEL_ERRORS}
     return {
         # Fields at the end of a history have the error of its last sample.

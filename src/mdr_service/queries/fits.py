@@ -13,7 +13,7 @@ from mdr_service.schemas.fits import FitQuery, LoopQuery
 def solve_fit(query: FitQuery) -> Fit:
     """Fit F = E* F̂(d − d₀) + F₀ to a measured curve by least squares.
 
-    The standard errors hold for independent errors of the forces of equal size. Warnings report
+    The standard errors hold for independent errors of equal size in the forces. Warnings report
     residuals that are not such noise: `two_branches` (give a `segment`), `noise_grows`,
     `correlated_noise`, or `misfit` where the shape or the model is wrong. Other warnings report a
     single decisive point (`one_point`), a lopsided interval of the contact point or an offset that
@@ -51,8 +51,8 @@ def solve_loop(query: LoopQuery) -> LoopFit:
 
     A rig in series with the contact makes it look softer: `rig_compliance` is given, 0 included, or
     fitted. A loop far below full slip hardly separates the rig from the contact, and is rejected
-    without `rig_compliance`. The standard errors hold for independent errors of the forces of
-    equal size; the warnings `misfit` and `correlated_noise` report residuals that are not such
+    without `rig_compliance`. The standard errors hold for independent errors of equal size in
+    the forces; the warnings `misfit` and `correlated_noise` report residuals that are not such
     noise, in the order of time, of the displacement and on both branches. `error_estimate` is the
     numerical error of the parameters.
     """
@@ -60,7 +60,7 @@ def solve_loop(query: LoopQuery) -> LoopFit:
     require_one_of(query, *loads)
     if query.material.model_fields_set & ADHESION:
         raise InputError(("material", "work_of_adhesion"), adhesion.AdhesiveContact.unusable)
-    # Bodies always have a shear modulus, which is that of the contact only if it is not fitted.
+    # Bodies always have a shear modulus; it gives G* of the contact only if that is not fitted.
     is_known = query.material.has("g_star") or "g_star" not in (query.fit or ["g_star"])
     # The load is a member of the request itself.
     with pointing({"load": (), "g_star": ("material", "g_star")}):

@@ -58,7 +58,7 @@ def solve_path(query: HistoryQuery | LoadedQuery, **more: Any) -> LoadHistory:
         if first != "history":
             raise
         if len(rest) == 3:
-            # The core numbers points, of which the shorter list has but the last.
+            # The core numbers the points of the path; a shorter list holds one value for all.
             points = getattr(given, str(rest[0])).value
             rest[2:] = [min(int(rest[2]), len(points) - 1)] if isinstance(points, list) else []
         raise InputError((name, *rest), error.detail) from None

@@ -31,7 +31,7 @@ class Strict(BaseModel):
     def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: Handler) -> dict[str, Any]:
         """Return the JSON schema, with the dimensions of quantities as `x-dimension`.
 
-        The descriptions tell the defaults, because client generators would make members that have
+        The descriptions state the defaults, because client generators would make members that have
         a default required.
         """
         reference = handler(core)

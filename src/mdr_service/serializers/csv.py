@@ -1,6 +1,6 @@
 """CSV: one column per quantity, one row per load (and radius), sample or number of cycles.
 
-Plain text has the same cells without the heading, so that one number is a number alone.
+Plain text has the same cells without the heading, so that a single value is a bare number.
 """
 
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ MEDIA_TYPE: Final = "text/csv"
 PLAIN_TEXT: Final = "text/plain"
 # Lists of objects and of keys of the literature.
 _LISTS: Final = frozenset({"warnings", "holds_while", "sources"})
-# Lists over the cycles of a history or at its end: these have no row.
+# Lists over the cycles of a history, or at its end: their entries belong to no row.
 _NOT_IN_ROWS: Final = frozenset(
     {*_LISTS, "slip_fronts", "energy_per_cycle", "secant_stiffness", "correlation"}
 )

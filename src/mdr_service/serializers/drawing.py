@@ -1,6 +1,6 @@
 """Drawing of the panels of a picture with Matplotlib.
 
-Many points are joined by a line. Few are marks: what lies between them was not computed.
+Many points are joined by a line. Few points are marks: no values between them were computed.
 """
 
 import gc
@@ -45,7 +45,7 @@ _METADATA: Final = {
     "png": {"Software": None},
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
-# Matplotlib's annotations are narrower than what it takes.
+# Matplotlib accepts more types than its annotations declare.
 _Axes = Any
 
 
@@ -66,7 +66,7 @@ def draw(
     size : width and height [mm]; by default the usual size.
     units : units that the labels name.
     """
-    # The parts of a figure refer to it, so that the one before would stay beside this one.
+    # The parts of a figure refer to it, which would keep the previous figure in memory.
     gc.collect()
     usual = _WIDTH, FRAME + len(panels) * _PANEL
     width, height = size or usual
@@ -91,7 +91,7 @@ def draw(
                 _draw_curves(each, panel)
             each.set_ylabel(text(panel.y))
             named |= {line.get_label(): line for line in each.get_legend_handles_labels()[0]}
-        # At the right end stands a power of ten.
+        # Keep the right end free: Matplotlib writes the axis' power of ten there.
         axes[-1].set_xlabel(text(panels[0].x), loc="left" if is_small else "center")
         if named or title:
             style: Any = {"loc": "outside upper center", "ncols": 1 if is_small else 3}
@@ -118,7 +118,7 @@ def _draw_curves(axes: _Axes, panel: Panel) -> None:
         shown = name if finite.any() else f"{name} (∞)".strip()
         color = "0.4" if is_reference else f"C{index}"
         axes.plot(x, np.where(finite, y, np.nan), style, color=color, label=shown)
-    # Zero is in sight.
+    # Extend the axes to include zero.
     axes.axhline(0.0, linewidth=0.0)
     if panel.x not in {"radius", "x", "z"}:
         axes.axvline(0.0, linewidth=0.0)
@@ -136,7 +136,7 @@ def _draw_map(axes: _Axes, panel: Map) -> Any:
     signed = shown.min() < 0
     largest = min(np.abs(shown).max(), bound) or 1.0
     style = {"cmap": "RdBu_r" if signed else "viridis", "vmin": -largest * signed, "vmax": largest}
-    # Each value fills the cell around its point: what lies between was not computed.
+    # Each value fills the cell around its point: no values between points were computed.
     colors = axes.pcolormesh(panel.at_x, panel.at_z, shown, rasterized=True, **style)
     axes.grid(visible=False)
     if np.ptp(panel.at_z):

@@ -27,7 +27,7 @@ def write(result: Mapping[str, Any]) -> bytes:
 
 
 def _flat(result: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the members of a result, those of nested objects with the names joined by dots."""
+    """Yield the members of a result; names of members of nested objects are joined by dots."""
     for name, value in result.items():
         if name in {"final_state", "holds_while"}:
             # The lists of these members differ in length; only JSON holds them.
