@@ -89,6 +89,20 @@ def test_unit_changes_nothing(seed: int) -> None:
         assert other == pytest.approx(forces[0], rel=1e-9, abs=0)
 
 
+def test_unit_changes_no_stated_error() -> None:
+    """A point that only the columns can fit has no residual but rounding errors."""
+    r = np.array(
+        [0, 0.013528061738703648, 0.041138443103225154, 0.07884822479149367, 0.12510081145737495]
+    )
+    f = np.array([0, 0, 6.402514224275244e-06, 0.0008395520350751366, 0.003771253806364244])
+    stated = []
+    for unit in (1.0, 1e3, 1e6):
+        table = Tabulated(unit * r, unit * f, breaks=(unit * r[2],))
+        contact = solve(table, 1.0, contact_radius=unit * 0.0464)
+        stated.append(float(np.asarray(contact.data_error)))
+    assert stated == pytest.approx([stated[0]] * 3, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("body", "b"),
     [

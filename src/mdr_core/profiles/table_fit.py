@@ -365,6 +365,7 @@ class _Model:
         outside = 1 - np.square(seen).sum(axis=1) - np.square(left).sum(axis=1)
         # A point that only the columns can fit has a residual of rounding errors.
         outside = np.where(outside > _UNSEEN, outside, 0.0)
+        left[np.linalg.norm(left, axis=1) < _UNSEEN] = 0.0
         residual = np.where(outside > 0, self.rest, 0.0) + left @ (share * self.part)
         own = np.maximum(np.square(left) @ share + outside, np.finfo(float).tiny)
         over = np.square(residual / own) - self.sigma[self.at] ** 2 / own
