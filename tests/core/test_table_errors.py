@@ -103,6 +103,15 @@ def test_unit_changes_no_stated_error() -> None:
     assert stated == pytest.approx([stated[0]] * 3, rel=1e-6)
 
 
+def test_round_numbers_are_not_rounded() -> None:
+    """1, 2, 5, 10, ... have one digit each, and no error of half of it."""
+    r = np.append(np.outer([0.01, 0.1, 1.0], [1, 2, 5]).round(2), 10.0)
+    off, stated, codes = compared(Table(Paraboloid(1.0), "exact", r, r * r / 2, (), None))
+    assert (off <= stated).all()
+    assert stated.max() < 0.02
+    assert "smoothed" not in codes
+
+
 @pytest.mark.parametrize(
     ("body", "b"),
     [
