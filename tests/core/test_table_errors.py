@@ -9,6 +9,7 @@ from mdr_core import adhesion, fields
 from mdr_core.errors import InputError
 from mdr_core.normal import solve
 from mdr_core.profiles import (
+    CappedParaboloid,
     Cone,
     Hyperboloid,
     Paraboloid,
@@ -110,6 +111,15 @@ def test_round_numbers_are_not_rounded() -> None:
     assert (off <= stated).all()
     assert stated.max() < 0.02
     assert "smoothed" not in codes
+
+
+def test_rounded_points_of_an_undeclared_edge_are_a_body() -> None:
+    """What no admissible shape comes near is not rounding, and the digits weight no points."""
+    r = np.array([-25.54, -17.03, -8.513, 0.0, 8.513, 17.03, 25.54])
+    f = np.array([5.603, 2.075, 0.1585, -0.002895, 0.1703, 2.07, 5.603])
+    body = CappedParaboloid(10.205823804, 204.31949304, 51.079873260)
+    off, stated, _ = compared(Table(body, "digits", r, f, (), None))
+    assert (off <= stated).all()
 
 
 @pytest.mark.parametrize(
