@@ -9,6 +9,7 @@ from mdr_core import adhesion, fields
 from mdr_core.errors import InputError
 from mdr_core.normal import solve
 from mdr_core.profiles import (
+    CappedParaboloid,
     Cone,
     Hyperboloid,
     Paraboloid,
@@ -87,6 +88,38 @@ def test_unit_changes_nothing(seed: int) -> None:
         forces.append(solve(table, 1.0, contact_radius=a).normal_force / unit**2)
     for other in forces[1:]:
         assert other == pytest.approx(forces[0], rel=1e-9, abs=0)
+
+
+def test_unit_changes_no_stated_error() -> None:
+    """A point that only the columns can fit has no residual but rounding errors."""
+    r = np.array(
+        [0, 0.013528061738703648, 0.041138443103225154, 0.07884822479149367, 0.12510081145737495]
+    )
+    f = np.array([0, 0, 6.402514224275244e-06, 0.0008395520350751366, 0.003771253806364244])
+    stated = []
+    for unit in (1.0, 1e3, 1e6):
+        table = Tabulated(unit * r, unit * f, breaks=(unit * r[2],))
+        contact = solve(table, 1.0, contact_radius=unit * 0.0464)
+        stated.append(float(np.asarray(contact.data_error)))
+    assert stated == pytest.approx([stated[0]] * 3, rel=1e-6)
+
+
+def test_round_numbers_are_not_rounded() -> None:
+    """1, 2, 5, 10, ... have one digit each, and no error of half of it."""
+    r = np.append(np.outer([0.01, 0.1, 1.0], [1, 2, 5]).round(2), 10.0)
+    off, stated, codes = compared(Table(Paraboloid(1.0), "exact", r, r * r / 2, (), None))
+    assert (off <= stated).all()
+    assert stated.max() < 0.02
+    assert "smoothed" not in codes
+
+
+def test_rounded_points_of_an_undeclared_edge_are_a_body() -> None:
+    """What no admissible shape comes near is not rounding, and the digits weight no points."""
+    r = np.array([-25.54, -17.03, -8.513, 0.0, 8.513, 17.03, 25.54])
+    f = np.array([5.603, 2.075, 0.1585, -0.002895, 0.1703, 2.07, 5.603])
+    body = CappedParaboloid(10.205823804, 204.31949304, 51.079873260)
+    off, stated, _ = compared(Table(body, "digits", r, f, (), None))
+    assert (off <= stated).all()
 
 
 @pytest.mark.parametrize(

@@ -100,11 +100,24 @@ def _likeliest(points: TablePoints, uncertainty: float | None) -> TableFit:
     ----------
     uncertainty : standard uncertainty of the heights over their range; None to estimate it.
     """
-    tried, seen = _searched(TableBasis(points), uncertainty)
-    noise = seen[0].sigma[seen[0].at]
+    basis = TableBasis(points)
+    tried, coefficients, best, excess = _chosen(basis, uncertainty)
+    noise = excess * best.sigma[best.at]
     if uncertainty is None and noise < _ROUNDED * root_mean_square(points.rounding):
-        tried, seen = _searched(TableBasis(points.by_digits), uncertainty)
-    basis = seen[0].basis
+        basis = TableBasis(points.by_digits)
+        tried, coefficients, best, excess = _chosen(basis, uncertainty)
+    blind = bool(points.x[0] > basis.knots[1] / 2)
+    return basis.fit(coefficients, *_spread(tried, best, excess, blind=blind))
+
+
+def _chosen(
+    basis: TableBasis, uncertainty: float | None
+) -> tuple[list["_Model"], Array, "_Model", float]:
+    """Return all models that were tried, and the likeliest admissible fit.
+
+    It is given by its coefficients, its model, and its deviation over the noise, 1 or more.
+    """
+    tried, seen = _searched(basis, uncertainty)
     found: list[tuple[float, Array, _Model, float]] = []
     for each in seen:
         if found and each.least >= min(score for score, *_ in found):
@@ -114,8 +127,7 @@ def _likeliest(points: TablePoints, uncertainty: float | None) -> TableFit:
         score = each.least + 2 * max(each.left_over, 1) * np.log(excess)
         found.append((score, coefficients, each, excess))
     _, coefficients, best, excess = min(found, key=lambda fit: fit[0])
-    blind = bool(points.x[0] > basis.knots[1] / 2)
-    return basis.fit(coefficients, *_spread(tried, best, excess, blind=blind))
+    return tried, coefficients, best, excess
 
 
 def _searched(
@@ -365,6 +377,7 @@ class _Model:
         outside = 1 - np.square(seen).sum(axis=1) - np.square(left).sum(axis=1)
         # A point that only the columns can fit has a residual of rounding errors.
         outside = np.where(outside > _UNSEEN, outside, 0.0)
+        left[np.linalg.norm(left, axis=1) < _UNSEEN] = 0.0
         residual = np.where(outside > 0, self.rest, 0.0) + left @ (share * self.part)
         own = np.maximum(np.square(left) @ share + outside, np.finfo(float).tiny)
         over = np.square(residual / own) - self.sigma[self.at] ** 2 / own

@@ -123,6 +123,9 @@ def _rounding(values: Array, points: int) -> Array:
     # a power of ten is the last number of its decade.
     counts = [round(count) for count in (values / unit).tolist()]
     digits = max(len(str(count).rstrip("0")) for count in counts)
+    if 10.0 ** (1 - digits) > _FINEST_STEP:
+        # Numbers of one or two digits, as 1, 2, 5, 10, are round, not rounded.
+        return np.full_like(values, unit / np.sqrt(12))
     places = np.array([max(len(str(max(count - 1, 0))) - digits, 0) for count in counts])
     return np.asarray(unit * 10.0**places / np.sqrt(12))
 
