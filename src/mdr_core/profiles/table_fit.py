@@ -117,23 +117,6 @@ def _chosen(
 
     It is given by its coefficients, its model, and its deviation over the noise, 1 or more.
     """
-    tried, seen = _searched(basis, uncertainty)
-    found: list[tuple[float, Array, _Model, float]] = []
-    for each in seen:
-        if found and each.least >= min(score for score, *_ in found):
-            break
-        coefficients, excess = _admissible(basis, each)
-        # A deviation that no admissible shape removes is noise.
-        score = each.least + 2 * max(each.left_over, 1) * np.log(excess)
-        found.append((score, coefficients, each, excess))
-    _, coefficients, best, excess = min(found, key=lambda fit: fit[0])
-    return tried, coefficients, best, excess
-
-
-def _searched(
-    basis: TableBasis, uncertainty: float | None
-) -> tuple[list["_Model"], list["_Model"]]:
-    """Return all models that were tried, and those whose jumps are seen, the likeliest first."""
 
     def models(jumps: Flags) -> "list[_Model]":
         return [_Model(basis, uncertainty, jumps, grading) for grading in _GRADINGS]
@@ -146,7 +129,16 @@ def _searched(
         jumping = [each for each in tried if each.smallest_jump > _LEAST_JUMP]
         seen = sorted(jumping, key=lambda each: each.least)
         before, best = best, seen[0]
-    return tried, seen
+    found: list[tuple[float, Array, _Model, float]] = []
+    for each in seen:
+        if found and each.least >= min(score for score, *_ in found):
+            break
+        coefficients, excess = _admissible(basis, each)
+        # A deviation that no admissible shape removes is noise.
+        score = each.least + 2 * max(each.left_over, 1) * np.log(excess)
+        found.append((score, coefficients, each, excess))
+    _, coefficients, best, excess = min(found, key=lambda fit: fit[0])
+    return tried, coefficients, best, excess
 
 
 def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:

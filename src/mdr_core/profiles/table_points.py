@@ -119,15 +119,13 @@ def _rounding(values: Array, points: int) -> Array:
     # On a grid the unit is the spacing, which is no rounding.
     if points < 3 or not 0 < unit < _FINEST_STEP / points:
         return 0 * values
-    # Of numbers with as many significant digits each, the larger ones are rounded to more units;
-    # a power of ten is the last number of its decade.
+    # Of numbers with as many significant digits each, the larger ones are rounded to more units; a
+    # power of ten is the last number of its decade. Numbers of one or two digits, as 1, 2, 5, 10,
+    # are round, not rounded.
     counts = [round(count) for count in (values / unit).tolist()]
     digits = max(len(str(count).rstrip("0")) for count in counts)
-    if 10.0 ** (1 - digits) > _FINEST_STEP:
-        # Numbers of one or two digits, as 1, 2, 5, 10, are round, not rounded.
-        return np.full_like(values, unit / np.sqrt(12))
     places = np.array([max(len(str(max(count - 1, 0))) - digits, 0) for count in counts])
-    return np.asarray(unit * 10.0**places / np.sqrt(12))
+    return np.asarray(unit * 10.0 ** (places * (digits > 2)) / np.sqrt(12))
 
 
 def _common_unit(values: Array) -> float:
