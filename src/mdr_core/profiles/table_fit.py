@@ -102,8 +102,8 @@ def _likeliest(points: TablePoints, uncertainty: float | None) -> TableFit:
     """
     basis = TableBasis(points)
     tried, coefficients, best, excess = _chosen(basis, uncertainty)
-    noise = excess * best.sigma[best.at]
-    if uncertainty is None and noise < _ROUNDED * root_mean_square(points.rounding):
+    noise, differ = excess * best.sigma[best.at], np.ptp(points.rounding) > 0
+    if uncertainty is None and differ and noise < _ROUNDED * root_mean_square(points.rounding):
         basis = TableBasis(points.by_digits)
         tried, coefficients, best, excess = _chosen(basis, uncertainty)
     blind = bool(points.x[0] > basis.knots[1] / 2)
