@@ -108,7 +108,7 @@ class Tabulated(Profile):
     ) -> Self:
         """Return the profile of a tip with A(h) = C0 h^2 + C1 h + C2 h^(1/2) + C3 h^(1/4) + ...
 
-        Source: oliver-pharr.
+        `data_error` does not include the errors of the coefficients. Source: oliver-pharr.
 
         Parameters
         ----------
