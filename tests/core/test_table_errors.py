@@ -101,7 +101,7 @@ def test_unit_changes_no_stated_error() -> None:
         table = Tabulated(unit * r, unit * f, breaks=(unit * r[2],))
         contact = solve(table, 1.0, contact_radius=unit * 0.0464)
         stated.append(float(np.asarray(contact.data_error)))
-    assert stated == pytest.approx([stated[0]] * 3, rel=1e-6)
+    assert stated == pytest.approx([stated[0]] * 3, rel=1e-6, abs=0)
 
 
 def test_round_numbers_are_not_rounded() -> None:
