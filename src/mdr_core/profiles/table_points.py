@@ -75,13 +75,14 @@ def cleaned(r: Array, f: Array, breaks: Sequence[float]) -> TablePoints:
         advice = off_axis(r, f) or "reverse their sign"
         raise InputError(("profile", "f"), f"the heights fall away from the axis: {advice}")
     distinct = np.diff(x, append=2.0) > _NEAR * x / x.size
-    of_radius, rounding = (np.bincount(group, _rounding(each, x.size)) / count for each in given)
-    least = float(np.median(rounding))
-    if max(of_radius.max(), least) > _EXACT and distinct.sum() > 1:
+    of_radius, of_height = (np.bincount(group, _rounding(each, x.size)) / count for each in given)
+    rounding, least = of_height, 0.0
+    if max(of_radius.max(), of_height.max()) > _EXACT and distinct.sum() > 1:
         # An error of the radius is one of the height on a slope.
         slope = np.interp(x, x[distinct], np.gradient(y[distinct], x[distinct]))
-        rounding = np.hypot(of_radius * slope, rounding)
-        least = np.median(rounding[rounding > 0]) * (least > 0)
+        rounding = np.hypot(of_radius * slope, of_height)
+        # Heights with all digits tell of no rounding.
+        least = np.median(rounding[rounding > 0]) * of_height.any()
     scaled = tuple(b / end for b in breaks)
     weight = np.sqrt(count)
     return TablePoints(x, y, weight, rounding, distinct, scaled, (end, height), float(least))
