@@ -16,7 +16,6 @@ import numpy as np
 from mdr_core.elementwise import every, full, in_order, is_number, some, where
 from mdr_core.inversion import Function, invert
 from mdr_core.profiles import Profile
-from mdr_core.profiles.power_functions import power_stick
 from mdr_core.quadrature import NODES, gauss_legendre
 from mdr_core.typing import Array
 from mdr_core.validation import require_inside
@@ -92,9 +91,8 @@ def stick_edge(
     -------
     c and a - c in the contact coordinate.
     """
-    if exponents := profile.stick_exponents:
-        inner, annulus = power_stick(exponents[of_force], ratio, rest)
-        return coordinate * inner, coordinate * annulus
+    if parts := profile.stick_parts(ratio, rest, of_force=of_force):
+        return coordinate * parts[0], coordinate * parts[1]
     step = force_step if of_force else depth_step
     slope_at = profile.force_slope if of_force else profile.depth_slope
     with np.errstate(divide="ignore", invalid="ignore"):

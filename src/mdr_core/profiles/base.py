@@ -188,11 +188,6 @@ class Profile(ABC):
         """Largest local exponent of g; it sets the number of nodes."""
         return max((STEEPNESS, *self.exponents))
 
-    @property
-    def stick_exponents(self) -> tuple[Parameter, Parameter] | None:
-        """Exponents of a power law of depth and of force, in the contact coordinate; else None."""
-        return None
-
     # Methods over the contact coordinate.
 
     @property
@@ -313,6 +308,15 @@ class Profile(ABC):
         return invert(sloped, target, start, low, high)
 
     # Methods over the slip annulus.
+
+    def stick_parts(
+        self, ratio: Array, rest: Array, *, of_force: bool
+    ) -> tuple[Array, Array] | None:
+        """c/a and 1 - c/a in the contact coordinate if the load is a power of it, else None.
+
+        Parameters: see `equivalent_1d.stick_edge`.
+        """
+        return None
 
     def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array | None:
         """(F(a) - F(c))/E* if there is a closed form free of cancellation, else None.

@@ -34,11 +34,6 @@ class FlatPunch(Profile):
     is_flat_punch: ClassVar[bool] = True
 
     @property
-    def stick_exponents(self) -> tuple[Parameter, Parameter]:
-        """Source: mdr-5, Eqs. (5.31), (5.33)."""
-        return 1.0, 1.0
-
-    @property
     def breaks(self) -> tuple[Parameter, ...]:
         return (self.radius,)
 
@@ -83,6 +78,10 @@ class FlatPunch(Profile):
 
     def reduced_energy(self, coordinate: Array) -> Array:
         return self.radius * coordinate * coordinate
+
+    def stick_parts(self, ratio: Array, rest: Array, *, of_force: bool) -> tuple[Array, Array]:
+        """Source: mdr-5, Eqs. (5.31), (5.33). Parameters: see `Profile`."""
+        return rest, ratio
 
     def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Parameters: see `Profile`."""

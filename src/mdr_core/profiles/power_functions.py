@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.special import beta
 
-from mdr_core.elementwise import every, some, where
+from mdr_core.elementwise import where
 from mdr_core.typing import Array, Parameter
 
 
@@ -50,17 +50,7 @@ def power_stick(exponent: Parameter, ratio: Array, rest: Array) -> tuple[Array, 
 
     The ratio is the load divided by the load of full slip [1]. Source: notes, §4.
     """
-    cubic = np.equal(exponent, 3)
-    if every(cubic):
-        # Millions of contacts of paraboloids are of this kind: without logarithms.
-        inner = np.cbrt(rest)
-        return inner, ratio / (1 + inner + inner * inner)
     with np.errstate(divide="ignore"):
         exact = where(ratio < 0.5, np.log1p(-np.minimum(ratio, 0.5)), np.log(rest))
     e = exact / exponent
-    ends = np.exp(e), -np.expm1(e)
-    if some(cubic):
-        # The same bits as for a single contact.
-        inner, annulus = power_stick(3.0, ratio, rest)
-        return where(cubic, inner, ends[0]), where(cubic, annulus, ends[1])
-    return ends
+    return np.exp(e), -np.expm1(e)

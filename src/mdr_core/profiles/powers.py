@@ -15,6 +15,7 @@ from mdr_core.profiles.power_functions import (
     power,
     power_root,
     power_slope,
+    power_stick,
 )
 from mdr_core.typing import Array, Flags, Parameter
 
@@ -29,11 +30,6 @@ class PowerLaw(Profile):
     def scale(self) -> Parameter:
         # Contacts of all radii are similar: any one serves.
         return 1.0
-
-    @property
-    def stick_exponents(self) -> tuple[Parameter, Parameter]:
-        """Source: mdr-5, Eqs. (5.12), (5.16), (5.29), (5.31)."""
-        return self.exponent, self.exponent + 1
 
     def f(self, radius: Array) -> Array:
         with np.errstate(over="ignore", under="ignore"):
@@ -68,6 +64,10 @@ class PowerLaw(Profile):
         factor = 2 * n * n / ((n + 1) * (2 * n + 1))
         with np.errstate(over="ignore"):
             return np.square(self.g(coordinate)) * coordinate * factor
+
+    def stick_parts(self, ratio: Array, rest: Array, *, of_force: bool) -> tuple[Array, Array]:
+        """Source: mdr-5, Eqs. (5.12), (5.16), (5.29), (5.31). Parameters: see `Profile`."""
+        return power_stick(self.exponent + of_force, ratio, rest)
 
     def falls_from_axis(self, coordinate: Array) -> Flags:
         return (coordinate >= 0) & (self.exponent <= 2)
@@ -189,6 +189,13 @@ class Paraboloid(PowerLaw):
 
     def coordinate_from_reduced_force(self, reduced_force: Array) -> Array:
         return np.cbrt(0.75 * reduced_force * self.radius)
+
+    def stick_parts(self, ratio: Array, rest: Array, *, of_force: bool) -> tuple[Array, Array]:
+        """Parameters: see `Profile`."""
+        if not of_force:
+            return super().stick_parts(ratio, rest, of_force=False)
+        part = np.cbrt(rest)
+        return part, ratio / (1 + part + part * part)
 
     def force_step(self, coordinate: Array, width: Array, stick: Array) -> Array:
         """Source: mdr-5, Eq. (5.15). Parameters: see `Profile`."""
