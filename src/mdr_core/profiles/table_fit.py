@@ -100,12 +100,15 @@ def _likeliest(points: TablePoints, uncertainty: float | None) -> TableFit:
     ----------
     uncertainty : standard uncertainty of the heights over their range; None to estimate it.
     """
-    tried, coefficients, best, excess = _chosen(TableBasis(points), uncertainty)
-    noise, differ = excess * best.sigma[best.at], np.ptp(points.rounding) > 0
-    if uncertainty is None and differ and noise < _ROUNDED * root_mean_square(points.rounding):
-        tried, coefficients, best, excess = _chosen(TableBasis(points.by_digits), uncertainty)
-    blind = bool(points.x[0] > best.basis.knots[1] / 2)
-    return best.basis.fit(coefficients, *_spread(tried, best, excess, blind=blind))
+    basis = TableBasis(points)
+    if uncertainty is None and np.ptp(points.rounding) > 0:
+        most = _Model(basis, None, np.ones(1 + len(points.breaks), dtype=bool), np.inf)
+        _, excess = _admissible(basis, most)
+        if excess * most.sigma[most.at] < _ROUNDED * root_mean_square(points.rounding):
+            basis = TableBasis(points.by_digits)
+    tried, coefficients, best, excess = _chosen(basis, uncertainty)
+    blind = bool(points.x[0] > basis.knots[1] / 2)
+    return basis.fit(coefficients, *_spread(tried, best, excess, blind=blind))
 
 
 def _chosen(

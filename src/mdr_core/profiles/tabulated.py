@@ -324,8 +324,7 @@ def tip_points(
     if not 0 <= lowest_height < largest_height:
         detail = "must be positive or 0, and below the largest height"
         raise InputError(("profile", "lowest_height"), detail)
-    range_ = largest_height - lowest_height
-    h = lowest_height + range_ * np.linspace(0.0, 1.0, _POINTS_OF_AREA) ** 2
+    h = np.linspace(np.sqrt(lowest_height), np.sqrt(largest_height), _POINTS_OF_AREA) ** 2
     # The end of the tip is known, whatever A(h) is next to it.
     h = np.append(0.0, h[h > 0])
     area = np.array([c * h**2.0 ** (1 - i) for i, c in enumerate(coefficients)]).sum(axis=0)
