@@ -124,8 +124,10 @@ def titles_of(
             continue
         if found := re.search(r"(?i)\bunits?\b\W*(\S+)\W*$", text):
             common = unit_of(found[1]) or common
-        # A unit stays with its name where blanks separate columns.
-        joined = re.sub(r" (?=[\[({])", "~", re.sub(_LABEL, "", text))
+        # A unit stays with its name where blanks separate columns; a row of units has no names.
+        joined = re.sub(_LABEL, "", text)
+        if not joined.startswith(("[", "(", "{")):
+            joined = re.sub(r" (?=[\[({])", "~", joined)
         joined = re.sub(r"[\[({][^\[\](){}]*[\])}]", lambda b: re.sub("[ ,]", "~", b[0]), joined)
         cells = cells_of(re.sub(r" ?/ ?|(?<=\w) in (?=\w)", "/", joined), separator)
         cells = [
@@ -289,5 +291,7 @@ def unit_of(text: str) -> tuple[str, str, float] | None:
             symbol = {"length": "m", "force": "N"}.get(measure, name) if size == 1 else name
             sign = next((p for p, e in _PREFIXES.items() if e == power), f"10^{power} ")
             return measure, f"{sign}{symbol}", size * float(f"1e{power}")
-    root = unit_of(re.sub(_SQUARE, "", text)) if re.search(_SQUARE, text) else None
+    # A power of ten before a square multiplies the area, not its root.
+    is_square = not factor and re.search(_SQUARE, text)
+    root = unit_of(re.sub(_SQUARE, "", text)) if is_square else None
     return ("area", *root[1:]) if root else None

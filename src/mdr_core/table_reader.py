@@ -29,7 +29,8 @@ from mdr_core.table_headings import (
 from mdr_core.typing import Array
 from mdr_core.validation import require_type
 
-_AREAS: Final = {"area", "a", "section", "areas", "fläche", "kontaktfläche", "aire"}
+# An `A` is an area, an `a` is not.
+_AREAS: Final = {"A", "area", "section", "areas", "fläche", "kontaktfläche", "aire"}
 _POINT: Final = re.compile(r"(?ai)[-+]?(\d+\.?\d*|\.\d+)([ed][-+]?\d+)?")
 _COMMA: Final = re.compile(r"(?ai)[-+]?(\d+,?\d*|,\d+)([ed][-+]?\d+)?")
 # Separator of columns, and the form of a number, in the order of trial. Numbers with a decimal
@@ -53,6 +54,9 @@ _NUMBERLIKE: Final = re.compile(r"(?ai)[-+]?[\d.,]*\d[.,]?([ed][-+]?\d+)?")
 _DECIMAL: Final = str.maketrans(",dD", ".ee")
 # Quoted number with commas between thousands: in its column "3,000" is 3000, not 3.
 _THOUSANDS: Final = re.compile(r'" *[-+]?\d{1,3}(,\d{3})*,\d{3}(\.\d*|,\d{3}) *"')
+# Between commas "3,000" may be either, unless a number such as "0,5" shows a decimal comma.
+_EITHER: Final = re.compile(r'(?m)(?:^|,) *"[-+]?[1-9]\d{0,2},\d{3}" *(?:,|$)')
+_DECIMALS: Final = re.compile(r'"[-+]?(?![1-9]\d{0,2},\d{3}")\d*,\d*"')
 # Comment that names the segment of the rows beneath it, in files of JPK.
 _SEGMENT: Final = re.compile(r"segment: *(\w+)$")
 # Bytes of the longest file, about 10^5 points; longer files take seconds.
@@ -262,9 +266,11 @@ def _lines(text: str) -> list[tuple[int, bool, str]]:
 
     for pattern, replaced in _REPLACED:
         text = re.sub(pattern, replaced, text)
-    if grouped := _THOUSANDS.search(text):
+    either = None if _DECIMALS.search(text) else _EITHER.search(text)
+    if grouped := _THOUSANDS.search(text) or either:
         line = text.count("\n", 0, grouped.start()) + 1
-        raise refuse(line, "a comma stands before thousands: write numbers without it")
+        detail = "a comma may stand before thousands: write 1000, and a decimal point"
+        raise refuse(line, detail)
     lines = re.sub('"([^"\n]*)"', unquoted, text).split("\n")
     return [
         (number, line.startswith("#"), line.lstrip("#").strip(" ").rstrip(" \t;,"))
@@ -299,7 +305,7 @@ def _rows(
     for number, comment, text in lines:
         if comment or not text:
             segment = named[1] if (named := _SEGMENT.match(text)) else segment
-            heading += [] if rows else [(number, text)]
+            heading += [] if rows or named else [(number, text)]
             continue
         cells = cells_of(text, separator)
         found = _numbers(cells, form)
@@ -332,7 +338,7 @@ def _table(
     places = [[number - 1] for number in columns or ()] or places_of(titles, numeric, kind, first)
     table = _taken(rows, titles, places, kind)
     if kind == PROFILE:
-        if not columns and not any(titles[i].name or titles[i].unit for (i,) in places):
+        if not columns:
             _require_profile(table)
         return table
     if len(places[0]) > 1:
@@ -373,7 +379,13 @@ def _taken(
 
 
 def _require_profile(table: ParsedFile) -> None:
-    """Raise InputError if columns without names are so steep that they may be h and A(h)."""
+    """Raise InputError if an `a` has no unit, or columns without names may be h and A(h)."""
+    titles = [table.titles[i] for (i,) in table.taken.values()]
+    if titles[0].name == "a" and not titles[0].unit:
+        detail = "a may be a radius or an area: name it r or A, or give its unit"
+        raise refuse(titles[0].line, detail)
+    if any(title.name or title.unit for title in titles):
+        return
     rise = np.ptp(table.values[1]) / max(np.abs(table.values[0]).max(), TINY)
     if rise > _STEEPEST:
         detail = (
@@ -387,7 +399,8 @@ def _is_area(title: Title) -> bool:
     """Return whether a column is an area, by its name or its unit; r² in mm² is not."""
     measured = title.unit is not None and title.unit[0] == "area"
     is_radius = title.name.lower().startswith(("r", "x"))
-    return not _AREAS.isdisjoint(title.words) or (measured and not is_radius)
+    words = {*title.words, *re.split(r"[\W\d_]+", title.name)}
+    return not _AREAS.isdisjoint(words) or (measured and not is_radius)
 
 
 def _column(rows: Sequence[_Row], i: int) -> Array:

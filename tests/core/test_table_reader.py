@@ -66,6 +66,34 @@ def test_unit_that_contradicts_the_name_is_refused(heading: str, unit: str) -> N
         parse(f"{heading}\n1;2\n3;4\n".encode(), PROFILE)
 
 
+def test_power_of_ten_before_a_square_is_no_power_of_its_root() -> None:
+    with pytest.raises(InputError, match=r"Line 1: the unit 10\^-12 m\^2 is none of m², mm²"):
+        parse(b"A [10^-12 m^2];h [nm]\n1;2\n3;4\n", PROFILE)
+
+
+def test_column_a_is_a_radius_by_its_unit_alone() -> None:
+    for heading, quantity in (("a [µm];h [nm]", "radius"), ("a [µm²];h [nm]", "area")):
+        assert parse(f"{heading}\n1;2\n3;4\n".encode(), PROFILE).taken == {
+            quantity: [0],
+            "height": [1],
+        }
+    with pytest.raises(InputError, match="a may be a radius or an area: name it r or A, or give"):
+        parse(b"a;h\n1;2\n3;4\n", PROFILE)
+    # The columns that the user chooses are those of radii and heights.
+    assert "radius" in parse(b"a;h\n1;2\n3;4\n", PROFILE, (1, 2)).taken
+
+
+def test_row_of_units_between_blanks_has_one_for_each_column() -> None:
+    # The form in which Gwyddion exports a profile.
+    table = parse(b"#    x1    y1\n#   [m]   [m]\n1e-6  2e-9\n3e-6  4e-9\n", PROFILE)
+    assert [title.unit for title in table.titles] == [("length", "m", 1.0)] * 2
+
+
+def test_quoted_number_with_three_decimals_is_one_beside_another_decimal_comma() -> None:
+    table = parse(b'r,f\n"0,5","0,125"\n"1,000","0,5"\n', PROFILE)
+    assert np.array_equal(table.values, [[0.5, 1.0], [0.125, 0.5]])
+
+
 def test_argument_of_a_function_is_no_unit() -> None:
     table = parse(b"r [mm];f(r) [mm]\n0;0\n1;2\n2;8\n", PROFILE)
     assert np.array_equal(table.values, [[0.0, 1.0, 2.0], [0.0, 2.0, 8.0]])
@@ -208,8 +236,12 @@ def test_curves_as_instruments_export_them(
         ("Depth * 10^6,Force [N]\n0.1,5\n0.2,6", "the unit or factor in"),
         ("Load rate,Depth,Time\n1.0,2.0,3.0", "name the depth d and the force F"),
         ("Depth [nm],Force [N]\n0.1,5\n0.2,1e999", "Line 3: a number is too large"),
-        ('Depth [nm],Force [N]\n"1,000.5",0\n"3,000",1', "Line 2: a comma stands before thousands"),
-        ('Depth [nm],Force [N]\n1,0\n"1,000,000",1', "Line 3: a comma stands before thousands"),
+        (
+            'Depth [nm],Force [N]\n"1,000.5",0\n"3,000",1',
+            "Line 2: a comma may stand before thousands",
+        ),
+        ('Depth [nm],Force [N]\n500,0\n"1,000",1', "Line 3: a comma may stand before thousands"),
+        ('Depth [nm],Force [N]\n1,0\n"1,000,000",1', "Line 3: a comma may stand before thousands"),
         ("PK\x03\x04", "is a workbook"),
     ],
 )
@@ -305,6 +337,7 @@ FILES = {
             "# k: 0.045 N/m\n"
             "# columns: height vDeflection verticalTipPosition\n"
             "# units: m N m\n"
+            "# segment: extend\n"
             "0.1 5 -0.1\n"
             "0.2 6 -0.2\n"
         ),
