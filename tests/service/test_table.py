@@ -48,6 +48,13 @@ def test_columns_that_are_left_open_are_listed_and_can_be_chosen(client: Client)
         assert document["errors"][0]["pointer"].startswith("/columns") or wrong in {"2,3", "5,9"}
 
 
+def test_unit_of_an_area_is_a_square(client: Client) -> None:
+    _, document = read(client, "A [nm^2],h [nm]\n0,0\n4,1\n", "profile")
+    assert [each["unit"] for each in document["columns"]] == ["nm²", "nm"]
+    # The unit of the radii.
+    assert document["units"] == ["nm", "nm"]
+
+
 def test_reversed_sign_of_a_separation_is_noted(client: Client) -> None:
     text = "Separation_nm_Ex Separation_nm_Rt Defl_nN_Ex Defl_nN_Rt\n5 -3 0 9\n-2 4 9 1\n"
     status, document = read(client, text)

@@ -516,7 +516,7 @@ class TableColumn(Answer):
     name: str
     """Name without the unit, empty without a heading."""
     unit: str | None
-    """Unit, of an area the unit of its root; null without one."""
+    """Unit; null without one."""
     quantity: str | None
     """`radius`, `area`, `height`, `depth` or `force`; null if it is not taken."""
 
