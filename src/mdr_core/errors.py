@@ -23,6 +23,14 @@ _GROUPS: Final = frozenset(
 )
 
 
+def _sentence(path: tuple[str | int, ...], detail: str) -> str:
+    """Return the detail after the name of the argument."""
+    names = path[1:] if len(path) > 1 and path[0] in _GROUPS else path
+    parts = (f"[{name}]" if isinstance(name, int) else f".{name}" for name in names)
+    argument = "".join(parts).removeprefix(".")
+    return f"{argument}: {detail}" if argument else detail
+
+
 class MDRError(Exception):
     """Base class of all exceptions that the core raises deliberately."""
 
@@ -41,17 +49,14 @@ class InputError(MDRError, ValueError):
     """
 
     def __init__(self, path: tuple[str | int, ...], detail: str, cases: Any = None) -> None:
-        names = path[1:] if len(path) > 1 and path[0] in _GROUPS else path
-        parts = (f"[{name}]" if isinstance(name, int) else f".{name}" for name in names)
-        argument = "".join(parts).removeprefix(".")
-        super().__init__(f"{argument}: {detail}" if argument else detail)
+        super().__init__(_sentence(path, detail))
         self.path = path
         self.detail = detail
         self.cases = cases
 
 
 class AccuracyError(MDRError):
-    """The required accuracy cannot be reached for this input.
+    """The required accuracy cannot be reached for this input. Its text names the argument.
 
     Parameters
     ----------
@@ -60,8 +65,9 @@ class AccuracyError(MDRError):
     """
 
     def __init__(self, detail: str, path: tuple[str | int, ...]) -> None:
-        super().__init__(detail)
+        super().__init__(_sentence(path, detail))
         self.path = path
+        self.detail = detail
 
 
 class DefectError(MDRError):

@@ -2,7 +2,7 @@
 
 import itertools
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from pydantic import BaseModel, ValidationError
@@ -87,7 +87,7 @@ def to_problem(error: Exception) -> ServiceError:
         choices = [(pointer(("columns", number)), name) for number, name in columns.items()]
         return invalid([(pointer(error.path), error.detail), *choices])
     if isinstance(error, AccuracyError):
-        return ServiceError(ACCURACY, str(error), [(pointer(error.path), str(error))])
+        return replace(invalid([(pointer(error.path), error.detail)]), type=ACCURACY)
     if isinstance(error, ValidationError):
         return from_validation(error)
     if isinstance(error, ServiceError):

@@ -49,6 +49,15 @@ def test_accuracy_that_is_missed_is_a_warning(client: Client) -> None:
     assert codes == {"accuracy", "half_space"}
 
 
+def test_accuracy_that_cannot_be_reached_names_its_member(client: Client) -> None:
+    document = client.post(PATH, query(tangential_mass=1e-4)).json()
+    assert document["type"] == "urn:mdr:problem:accuracy-not-reachable"
+    (error,) = document["errors"]
+    assert document["detail"] == f"tangential_mass: {error['detail']}"
+    assert error["pointer"] == "/tangential_mass"
+    assert error["detail"].startswith("is so small that")
+
+
 def test_one_velocity_serves_all(client: Client) -> None:
     one = client.post(PATH, query(normal_velocity=0.3)).json()
     assert one["normal_velocity"] == [0.3, 0.3]
