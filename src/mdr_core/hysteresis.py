@@ -64,7 +64,8 @@ _NO_WORSE: Final = 0.1**0.5
 _CAUSES: Final = {
     "misfit": "the shape, the rig, the normal load or the model is wrong, the points hold the "
     "first loading, or the force lags behind",
-    "correlated_noise": "the forces drift, or neighbouring errors are alike",
+    "correlated_noise": "the forces drift, neighbouring errors are alike, or the points hold the "
+    "first loading",
 }
 
 

@@ -248,7 +248,7 @@ def test_contact_in_a_socket_beyond_0_85_of_the_ball_is_rejected() -> None:
     force = float(normal.solve(socket, 1.0, contact_radius=0.85 * 14).normal_force)
     assert codes(normal.solve(socket, 1.0, normal_force=force * (1 - 1e-9))) == ["half_space"]
     for name, load in (("normal_force", force * 1.01), ("contact_radius", 11.91)):
-        with pytest.raises(InputError, match=r"60 degrees of the ball.*conforming_contact"):
+        with pytest.raises(InputError, match=r"60 degrees of the ball.*conforming contact"):
             normal.solve(socket, 1.0, **{name: load})
     (warning,) = normal.solve(socket, 1.0, contact_radius=5.0).warnings
     assert warning.instead == "conforming_contact"

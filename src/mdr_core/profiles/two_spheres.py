@@ -79,7 +79,7 @@ class TwoSpheres(Spheroid):
     @property
     def end(self) -> tuple[str, str]:
         reason = "more than 60 degrees of the ball, where a half-space describes nothing"
-        return super().end if self.other > 0 else (reason, "use a model of conforming_contact")
+        return super().end if self.other > 0 else (reason, "use a model of conforming contact")
 
     @property
     def scale(self) -> Parameter:
