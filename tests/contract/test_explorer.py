@@ -358,6 +358,45 @@ def test_curve_from_an_instrument_is_fitted(visit: Visit, tmp_path: Path) -> Non
     assert visit.page.locator("#measured").is_hidden()
 
 
+def test_fit_computes_with_a_thickness(visit: Visit, address: str) -> None:
+    # A ball of 5 µm on a gel of 2 kPa and 4 µm.
+    gel = {"youngs_modulus": 2e3, "poissons_ratio": 0.5}
+    material = {"bodies": ["rigid", gel], "layer": {"thickness": 4e-6, "base": "bonded"}}
+    depths = np.linspace(5e-8, 1e-6, 20).tolist()
+    body = {"profile": {"kind": "paraboloid", "radius": 5e-6}, "material": material}
+    load = {"load": {"indentation_depth": depths}}
+    forces = httpx.post(f"{address}v1/normal", json=body | load).json()["normal_force"]
+    case = "?tab=fit&radius=5e-6&e1=rigid&nu2=0.5&um=kPa&thickness=4e-6"
+    d, f = (",".join(map(str, each)) for each in (depths, forces))
+    visit.open(f"{case}#d={d}&F={f}&ud=m&uF=N")
+    modulus = visit.number("Young's modulus of the sample").split()[0]
+    assert float(modulus) == pytest.approx(2, rel=1e-4, abs=0)
+    # A loop checks the thickness.
+    visit.page.select_option("#field-measured", "loop")
+    assert visit.state() == "current"
+    assert visit.page.locator("#field-base").count() == 0
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "cp1252"])
+def test_text_of_a_file_is_that_which_is_read(visit: Visit, tmp_path: Path, encoding: str) -> None:
+    visit.open("?kind=tabulated&load=1e-4")
+    file = tmp_path / "profile.txt"
+    file.write_text("Strecke [µm];Höhe [nm];Güte\n0;0;1\n1;2;1\n2;8;1\n", encoding)
+    visit.page.set_input_files("#file", file)
+    visit.page.locator("#problem-table").get_by_text("name the radius r").wait_for()
+    text = visit.page.input_value("#table")
+    assert text.startswith("Strecke [µm];Höhe [nm]")
+    # An edited text is read as the file, and offers columns if there are any.
+    columns = visit.page.locator("#table-fields .columns select")
+    assert columns.count() == 2
+    visit.page.fill("#table", "no numbers")
+    visit.page.locator("#problem-table").get_by_text("no line holds two numbers").wait_for()
+    assert columns.count() == 0
+    with visit.changing():
+        visit.page.fill("#table", text.replace("Strecke", "r"))
+    assert visit.page.input_value("#unit-r") == "µm"
+
+
 def hertz(depths: np.ndarray, modulus: float, point: float) -> np.ndarray:
     """Return the forces [N] of a ball of 10 mm over depths [m]."""
     return 4 / 3 * modulus * 0.1 * np.maximum(depths - point, 0) ** 1.5

@@ -59,6 +59,15 @@ def test_forged_addresses_yield_offered_words_and_finite_numbers() -> None:
     assert any(result["unread"] for result in results)
 
 
+def test_load_of_another_control_is_that_of_the_result_or_a_number_of_its_unit() -> None:
+    calls = [
+        [{"load": load}, "control", "indentation_depth", known]
+        for load, known in ((20, {"indentation_depth": 3e-6}), (20, {}), (0, {}))
+    ]
+    results = evaluated("inputs.js", "module.withChoice(...call)", calls)
+    assert [result["load"] for result in results] == [3e-6, 2e-6, 0]
+
+
 def test_labels_are_those_of_the_openapi_document(client: Client) -> None:
     document = client.get("/openapi.json").json()
     assert (EXPLORER / "quantities.js").read_text("utf-8") == quantities(document)

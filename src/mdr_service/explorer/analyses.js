@@ -20,7 +20,7 @@ export const THICKNESS = {
   key: "thickness", label: "Thickness on a rigid base", dimension: "length", optional: true, placeholder: "half-space",
 };
 
-/** How a body of that thickness is held, of which Press takes account. */
+/** How a body of that thickness is held, of which Press and Fit take account. */
 export const BASE = { key: "base", label: "Layer on its base", choices: [["bonded", "bonded"], ["frictionless", "sliding"]] };
 
 const choicesOf = (names) => names.map((name) => [name, QUANTITIES[name][0]]);

@@ -72,7 +72,7 @@ export async function solveFit(inputs, query) {
   const found = await query("Fit", "v1/normal/fit", {
     profile, indentation_depth: taken(measured), ...drift, normal_force: taken(forces),
     fit: ["e_star", ...(inputs.fitted === "none" ? [] : inputs.fitted.split(","))],
-    body_thickness: material.body_thickness, poissons_ratio: inputs.nu2, indenter: material.bodies[0],
+    layer: material.layer, poissons_ratio: inputs.nu2, indenter: material.bodies[0],
   });
   // With adhesion some of the measured points are left out.
   const { indentation_depth: used } = found;

@@ -5,7 +5,7 @@ export const HELP = {
   e2: "Modulus of elasticity in tension.",
   nu1: "Between 0 and 0.5; an incompressible body has 0.5.",
   nu2: "Between 0 and 0.5; an incompressible body has 0.5.",
-  thickness: "Thickness of the softer body on a rigid base. Press solves the contact with the layer; the other tabs only warn if the body is too thin for a half-space.",
+  thickness: "Thickness of the softer body on a rigid base. Press, and Fit of a curve, solve the contact with the layer; the other tabs only warn if the body is too thin for a half-space.",
   base: "Whether the body is bonded to its base, or slides on it without friction.",
   control: "Quantity of the normal load that is known.",
   load: "A number, or a number with its unit: 5 kN.",

@@ -8,6 +8,8 @@ export const TABS = ["press", "push", "cycle", "impact", "stress", "wear", "fit"
 export const NORMAL = ["normal_force", "indentation_depth"];
 export const TANGENTIAL = ["tangential_force", "tangential_displacement"];
 export const RIGID = "rigid";
+// First value of a load that no result tells.
+const LOADS = { normal_force: 100, indentation_depth: 2e-6, contact_radius: 1e-4 };
 
 const DEFAULTS = {
   tab: "press",
@@ -158,9 +160,14 @@ export function pathPoints(inputs) {
   return inputs.path.split(";").map((point) => point.split(",").map(numberOf));
 }
 
-/** Return whether the analysis computes with a layer of the given thickness, rather than checking it. */
+/** Return whether the analysis computes with a layer, rather than checking its thickness. */
+export function takesLayer(inputs) {
+  return inputs.tab === "press" || (inputs.tab === "fit" && !hasLoop(inputs));
+}
+
+/** Return whether there is a layer with which the analysis computes. */
 export function hasLayer(inputs) {
-  return inputs.tab === "press" && inputs.thickness !== "";
+  return takesLayer(inputs) && inputs.thickness !== "";
 }
 
 /** Return the members that every request shares. */
@@ -178,7 +185,7 @@ export function basics(inputs) {
  */
 export function withChoice(given, key, value, known) {
   const inputs = { ...given, [key]: value };
-  if (key === "control" && known[value] > 0) inputs.load = known[value];
+  if (key === "control") inputs.load &&= known[value] > 0 ? known[value] : LOADS[value];
   if (key === "push" || key === "shear") {
     const share = known.tangential_force / (inputs.mu * known.normal_force);
     inputs.amount = value === "ratio" ? Math.min(share || 0.7, 1) : known[value] || inputs.load / 10;

@@ -7,7 +7,7 @@ import { showEditor } from "./load_path.js";
 import { MATERIALS, materialOf, weakest } from "./materials.js";
 import { bodyFields, curveFields, leadOf, listedField, loadFields, ANALYSES, BASE, BODIES, MEASURED, THICKNESS } from "./analyses.js";
 import { newestWins, query, Refusal } from "./requests.js";
-import { controls, defaultInputs, exampleOf, fromAddress, hasLoop, pathPoints, RIGID, TABS, toAddress, withChoice, withKind } from "./inputs.js";
+import { controls, defaultInputs, exampleOf, fromAddress, hasLoop, pathPoints, RIGID, TABS, takesLayer, toAddress, withChoice, withKind } from "./inputs.js";
 import { noteOnUnits, showAccuracy, showNumbers, showProblem } from "./outcome.js";
 import { showReport } from "./report.js";
 import { KINDS, OWN_FIELDS, OWN_FORMULAS } from "./shapes.js";
@@ -184,7 +184,7 @@ function showForm() {
   $("#curve-choice").hidden = isLoop;
   // The fit determines the modulus of body 2.
   const bodies = inputs.tab === "fit" && !isLoop ? [1] : [1, 2];
-  const layer = inputs.tab === "press" ? [THICKNESS, BASE] : [THICKNESS];
+  const layer = takesLayer(inputs) ? [THICKNESS, BASE] : [THICKNESS];
   fill($("#bodies"), [...bodies.flatMap((i) => [materialRow(i), ...rows(bodyFields(inputs, i))]), ...rows(layer)]);
   showBase();
   fill($("#loading"), rows(loadFields(inputs)));

@@ -57,8 +57,8 @@ export function showAccuracy({ responses, lines = [] }, notes, inputs, labels) {
 const SOURCES = {
   "/friction_coefficient": "mu", "/load": "load", "/tangential": "amount", "/oscillation": "amplitude",
   "/wear_coefficient": "wear", "/cycles": "cycles", "/body": "body",
-  "/material/work_of_adhesion": "w", "/material/body_thickness": "thickness", "/body_thickness": "thickness",
-  "/material/layer": "thickness",
+  "/material/work_of_adhesion": "w", "/material/body_thickness": "thickness",
+  "/material/layer": "thickness", "/layer": "thickness",
   "/history": "path", "/normal_mass": "mass", "/tangential_mass": "share", "/normal_velocity": "approach",
   "/tangential_velocity": "along", "/indentation_depth": "curve", "/normal_force": "curve",
   "/rig_compliance": "rig", "/poissons_ratio": "nu2",

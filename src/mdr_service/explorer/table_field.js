@@ -17,6 +17,17 @@ function areaText(coefficients, least, most, unit) {
   return [`h [${unit}], A [${unit}²]`, ...heights.map((h) => `${h}, ${area(h)}`)].join("\n");
 }
 
+/** Return the text of a file, which may be edited, as the service decodes it. */
+function decoded(bytes) {
+  const [first, second] = new Uint8Array(bytes);
+  const wide = { 0xfffe: "utf-16le", 0xfeff: "utf-16be" }[first * 256 + second];
+  try {
+    return new TextDecoder(wide ?? "utf-8", { fatal: true }).decode(bytes);
+  } catch {
+    return new TextDecoder("windows-1252").decode(bytes);
+  }
+}
+
 /**
  * Return the field in an element for tables of a kind (`PROFILE`, `CURVE`), with `show(table,
  * unreadable, heads)`, names of its columns. `change(table)` is called with a table that is read, else `fail()`.
@@ -63,7 +74,7 @@ export function tableField(root, kind, { change, fail }) {
     });
     const chosen = () => choices.map(([, choice]) => choice.value);
     for (const [, choice] of choices) choice.addEventListener("change", () => chosen().every(Boolean) && read(content, chosen()));
-    part(".columns").replaceChildren(...(columns.length > 2 || !taken.length ? choices.map(([label]) => label) : []));
+    part(".columns").replaceChildren(...(columns.length > (taken.length ? 2 : 0) ? choices.map(([label]) => label) : []));
   };
   const read = async (content = text.value, columns = undefined) => {
     given = [content, columns];
@@ -131,10 +142,11 @@ export function tableField(root, kind, { change, fail }) {
   });
   part("[type=file]").addEventListener("change", async ({ target }) => {
     const [file] = target.files;
-    text.value = await file.text();
+    const bytes = await file.arrayBuffer();
+    text.value = decoded(bytes);
     own.fill(false);
     // Send the bytes, because the service reads other encodings than UTF-8.
-    read(await file.arrayBuffer());
+    read(bytes);
     target.value = "";
   });
   part(".use-area")?.addEventListener("click", () => {
