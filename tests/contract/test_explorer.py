@@ -809,6 +809,19 @@ def test_negative_work_of_adhesion_is_refused_at_its_field(visit: Visit) -> None
     assert visit.state() == "refused"
 
 
+def test_own_loads_can_be_typed(visit: Visit) -> None:
+    visit.open()
+    # Half of a number or unit is none, and can be completed.
+    with visit.changing():
+        visit.page.locator("#loads").press_sequentially("1e2 5 kN")
+    assert "loads=100,5000" in visit.page.url
+    visit.page.fill("#loads", "ten")
+    assert visit.page.inner_text("#problem-loads") == "“ten”: not a number"
+    with visit.changing():
+        visit.page.fill("#loads", "10")
+    assert visit.state() == "current"
+
+
 def test_own_loads_give_a_table_of_all_results(visit: Visit, tmp_path: Path) -> None:
     visit.open()
     visit.page.fill("#loads", "1 2 5 10\n20; 50, 0.1 kN\t200 500 1e3 2e3 5 kN")
@@ -897,6 +910,27 @@ def test_load_path_points_are_keyboard_accessible(visit: Visit) -> None:
     )
     visit.page.get_by_role("button", name="Remove point 2").click()
     visit.page.wait_for_url("**path=100,0*")
+
+
+def test_load_path_is_typed_from_field_to_field(visit: Visit) -> None:
+    visit.open("?tab=cycle&path=100,0;100,20")
+    visit.page.locator("#editor input").nth(2).select_text()
+    for text in ("0.2 kN", "x"):
+        visit.page.keyboard.type(text)
+        visit.page.keyboard.press("Tab")
+    assert visit.page.inner_text("#problem-path") == "Point 2: not a number"
+    visit.page.keyboard.press("Shift+Tab")
+    with visit.changing():
+        visit.page.keyboard.type("-20")
+        visit.page.keyboard.press("Tab")
+    visit.page.keyboard.press("Shift+Tab")
+    visit.page.keyboard.type("-30")
+    # A click that ends the entry of a number acts, too.
+    with visit.changing():
+        visit.page.get_by_role("button", name="Add a point after point 2").click()
+    assert "path=100,0;200,-30;200,-30" in visit.page.url
+    assert visit.page.inner_text("#problem-path") == ""
+    assert visit.page.locator("#editor [aria-invalid]").count() == 0
 
 
 def test_page_contents_can_be_downloaded(visit: Visit, tmp_path: Path) -> None:

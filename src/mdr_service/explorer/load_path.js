@@ -32,12 +32,20 @@ export function showEditor(container, inputs, size, { change, fail }) {
   const points = pathPoints(inputs);
   const focused = document.activeElement?.dataset?.point;
   const commit = (path = points) => change(path.map((point) => point.join(",")).join(";"));
-  container.replaceChildren(
-    heading(size, commit), drawing(points, inputs, commit), table(points, inputs, commit, fail),
-    make("p", { className: "problem", role: "alert", id: "problem-path" }),
-  );
+  const [above, next] = [[heading(size, commit), drawing(points, inputs, commit)], table(points, inputs, commit, fail)];
+  const shownTable = container.querySelector(".points");
+  if (shownTable && textOf(shownTable) === textOf(next)) {
+    // The key or the click that ends an entry acts on the elements that are there.
+    above.forEach((element, i) => container.children[i].replaceWith(element));
+    container.querySelector(".problem").textContent = "";
+  } else {
+    container.replaceChildren(...above, next, make("p", { className: "problem", role: "alert", id: "problem-path" }));
+  }
   if (focused) container.querySelector(`[data-point="${focused}"]`)?.focus();
 }
+
+/** Return the labels and values of the numbers of a table. */
+const textOf = (element) => [...element.querySelectorAll("input")].map((each) => each.ariaLabel + each.value).join();
 
 function heading({ normal, tangential }, commit) {
   const rounded = (x) => Number(x.toPrecision(3));
@@ -134,6 +142,8 @@ function table(points, inputs, commit, fail) {
         return;
       }
       points[i][j] = value;
+      target.value = shown(value, QUANTITIES[control][1], inputs);
+      target.removeAttribute("aria-invalid");
       commit();
     },
   });

@@ -51,7 +51,7 @@ function setState(state) {
   $("#busy").textContent = "";
   if (state === "pending") setState.timer = setTimeout(() => ($("#busy").textContent = "Computing …"), BUSY);
   const outdated = state === "refused" || state === "unreadable";
-  for (const id of ["main-numbers", "numbers", "accuracy", "warnings", "charts", "own", "take-away"]) $(`#${id}`).inert = outdated;
+  for (const id of ["main-numbers", "numbers", "accuracy", "warnings", "charts", "own .row", "own .data", "take-away"]) $(`#${id}`).inert = outdated;
 }
 
 /** Show the case of the address. */

@@ -2,6 +2,7 @@
 
 import { make, makeTable } from "./dom.js";
 import { mark } from "./form.js";
+import { inWords } from "./messages.js";
 import { download, fileName } from "./requests.js";
 import { format, largest, noNumber, read, scaled, shown, withUnit } from "./units.js";
 import { workbook } from "./xlsx.js";
@@ -96,7 +97,7 @@ export function ownLoads(root, { state, solve, change, fail }) {
       try {
         cases.push({ value, result: await solve({ ...inputs, [field.key]: value }) });
       } catch (error) {
-        cases.push({ value, error: error.message });
+        cases.push({ value, error: inWords(error.message, inputs, {}) });
       }
       if (state().inputs !== inputs) return null;
     }
