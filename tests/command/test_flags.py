@@ -149,6 +149,21 @@ def test_error_of_a_named_segment_counts_the_points_of_the_file(
     assert capsys.readouterr().err.startswith(f"mdr fit: {curve}: 6: lies beyond the end")
 
 
+def test_fit_by_options_computes_with_a_layer(tmp_path: Path) -> None:
+    curve, result = tmp_path / "curve.csv", tmp_path / "fit.json"
+    rows = "".join(f"{10 * i - 10};{force}\n" for i, force in enumerate(FORCES))
+    curve.write_text("d [nm];F [µN]\n" + rows, "utf-8")
+    layer = ["--layer-thickness", "1e-6", "--layer-base", "bonded", "--poissons-ratio", "0.5"]
+    assert main(["fit", str(curve), *FIT_OPTIONS, *layer, "-o", str(result)]) == 0
+    given = {"thickness": 1e-6, "base": "bonded"}
+    query = tmp_path / "query.json"
+    query.write_text(json.dumps(FIT | {"layer": given, "poissons_ratio": 0.5}), "utf-8")
+    direct = tmp_path / "direct.json"
+    assert main(["fit", str(query), "-o", str(direct)]) == 0
+    fitted, expected = (json.loads(each.read_text("utf-8")) for each in (result, direct))
+    assert fitted["e_star"] == pytest.approx(expected["e_star"], rel=1e-9, abs=0)
+
+
 def test_a_fit_by_options_needs_its_curve(capsys: Capture) -> None:
     assert main(["fit", *FIT_OPTIONS]) == 2
     assert "needs the file of its curve" in capsys.readouterr().err
