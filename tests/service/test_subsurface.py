@@ -139,3 +139,23 @@ def test_formats(client: Client) -> None:
 
 def test_number_of_points_is_limited(client: Client) -> None:
     assert "/x" in pointers(client, MAP | {"x": [0.0] * 10_000, "z": [0.0] * 10_000})
+
+
+@pytest.mark.parametrize(
+    ("given", "detail"),
+    [
+        ({}, "x: is required: give x and z, or points"),
+        ({"x": [0.0]}, "z: is required: give x and z, or points"),
+        (
+            {"x": [0.0], "z": [0.0], "points": 3},
+            "x: cannot be combined with points: give x and z, or points",
+        ),
+    ],
+)
+def test_place_is_points_or_both_coordinates(
+    client: Client, given: dict[str, Any], detail: str
+) -> None:
+    query = {key: value for key, value in MAP.items() if key not in ("x", "z")}
+    response = client.post(PATH, query | given)
+    assert response.status_code == 422
+    assert response.json()["detail"] == detail

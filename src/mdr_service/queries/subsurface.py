@@ -34,7 +34,8 @@ def solve_subsurface(query: SubsurfaceQuery) -> Contact:
     require_loads(query)
     for name in ("x", "z"):
         if query.has(name) == query.has("points"):
-            raise InputError((name,), "give either x and z, or points, not both")
+            reason = "cannot be combined with points" if query.has(name) else "is required"
+            raise InputError((name,), f"{reason}: give x and z, or points")
     require_few_numbers(query, "x")
     body_of(query)
     if query.largest and query.material.has("work_of_adhesion"):
