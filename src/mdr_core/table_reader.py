@@ -49,8 +49,8 @@ _REPLACED: Final = (
     (r"[^\S\n][#!].*", ""),
     (" {2,}", " "),
 )
-# Any number, with whatever decimal sign.
-_NUMBERLIKE: Final = re.compile(r"(?ai)[-+]?[\d.,]*\d[.,]?([ed][-+]?\d+)?")
+# Any number, with whatever decimal sign, or parts of two: 1.234,5;0,5 has no column 5;0.
+_NUMBERLIKE: Final = re.compile(r"(?ai)[-+]?[\d.,;]*\d[.,]?([ed][-+]?\d+)?")
 _DECIMAL: Final = str.maketrans(",dD", ".ee")
 # Quoted number with commas between thousands: in its column "3,000" is 3000, not 3.
 _THOUSANDS: Final = re.compile(r'" *[-+]?\d{1,3}(,\d{3})*,\d{3}(\.\d*|,\d{3}) *"')

@@ -242,6 +242,7 @@ def test_curves_as_instruments_export_them(
         ),
         ('Depth [nm],Force [N]\n500,0\n"1,000",1', "Line 3: a comma may stand before thousands"),
         ('Depth [nm],Force [N]\n1,0\n"1,000,000",1', "Line 3: a comma may stand before thousands"),
+        ("d [m];F [N]\n0,0;0,0\n1.234,5;0,5", "Line 3: 2 numbers are expected"),
         ("PK\x03\x04", "is a workbook"),
     ],
 )
