@@ -436,6 +436,12 @@ def test_columns_segment_and_depths_of_a_curve_are_chosen(visit: Visit, tmp_path
         sample = visit.number("Young's modulus of the sample")
         assert float(sample.split()[0]) == pytest.approx(0.75 * modulus, rel=1e-6, abs=0)
         assert sample.endswith(unit)
+    # Another step of the history and back, the segments are still those of the file.
+    with visit.changing():
+        visit.page.click("#tab-press")
+    with visit.changing():
+        visit.page.go_back()
+    assert visit.page.locator("#field-rows option").all_inner_texts() == segments
     # Dragging over the chart takes the depths between, and a link keeps the choice.
     chart = visit.page.locator("figure", has_text="Force against depth").locator(".nsewdrag").first
     box = chart.bounding_box()

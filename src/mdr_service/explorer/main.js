@@ -27,8 +27,10 @@ let problem = null;
 const measurements = {};
 let last = null;
 let version = "";
-// Fields for tables, by the key of their input.
+// Fields for tables, by the key of their input, and the tables that were read last. They have
+// segments and times, which an address does not hold.
 const tables = {};
+const held = {};
 // Analysis whose results are shown.
 let shownTab;
 // Time after which a computation is reported [ms]: shorter ones would flicker.
@@ -61,6 +63,9 @@ function showAddress() {
     ? `Default values replace members of the link that the page cannot read: ${unread.join(", ")}.`
     : "";
   unreadable.clear();
+  for (const [key, table] of Object.entries(held)) {
+    if (["r", "f", "units"].every((part) => String(next[key][part]) === String(table[part]))) next[key] = table;
+  }
   show(next);
 }
 
@@ -325,7 +330,11 @@ function connect() {
   for (const [kind, { label }] of Object.entries(KINDS)) $("#kind").add(new Option(label, kind));
   $("#kind").addEventListener("change", () => show(withKind(inputs, $("#kind").value)));
   for (const [key, kind] of [["table", PROFILE], ["curve", CURVE]]) {
-    const take = key === "curve" ? takeCurve : (table) => change(key, table);
+    const take = (table) => {
+      held[key] = table;
+      if (key === "curve") takeCurve(table);
+      else change(key, table);
+    };
     tables[key] = tableField($(`#${key}-fields`), kind, { change: take, fail: () => fail(key) });
   }
   own = ownLoads($("#own"), {
