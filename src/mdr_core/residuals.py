@@ -127,8 +127,8 @@ def judged(
         code = "misfit"
     code = code if code in causes else _GENERAL[code]
     message = (
-        f"the residuals are not noise (probability {joint:.1g}): {causes[code]}, and the standard "
-        f"errors do not hold{remedy if code == 'misfit' else ''}"
+        f"the residuals are not noise (probability {joint:.1g}), and the standard errors do not "
+        f"hold: {causes[code]}{remedy if code == 'misfit' else ''}"
     )
     return joint, (Notice(code, message, joint, FALSE_ALARM),)
 

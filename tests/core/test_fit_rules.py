@@ -39,6 +39,17 @@ def test_two_branches_are_named() -> None:
     assert np.mean(found) >= 0.98
 
 
+def test_message_ends_with_the_cause_and_its_remedy() -> None:
+    up = np.linspace(0, 1, 50)
+    force = np.r_[hertz(up), hertz((up[::-1] - 0.3) / 0.7)]
+    found = fit.solve(
+        mdr.Paraboloid(1.0), indentation_depth=np.r_[up, up[::-1]], normal_force=force
+    )
+    (message,) = [each.message for each in found.warnings if each.code == "two_branches"]
+    end = "standard errors do not hold: loading and unloading differ: give the segment to fit"
+    assert message.endswith(end)
+
+
 def test_retraction_of_a_soft_sample_is_named_even_if_sorted() -> None:
     random, found = np.random.default_rng(102), []
     for _ in range(20):
