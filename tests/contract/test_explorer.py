@@ -815,6 +815,16 @@ def test_negative_work_of_adhesion_is_refused_at_its_field(visit: Visit) -> None
     assert visit.state() == "refused"
 
 
+def test_limit_of_wear_is_one_line_in_both_charts(visit: Visit) -> None:
+    visit.open("?tab=wear")
+    lines = visit.page.evaluate(
+        """[...document.querySelectorAll(".plot")].flatMap(({ data }) =>
+            data.filter(({ name }) => name === "limit").map(({ line }) => line.color + line.dash))"""
+    )
+    assert len(lines) == 2
+    assert lines[0] == lines[1]
+
+
 def test_own_loads_can_be_typed(visit: Visit) -> None:
     visit.open()
     # Half of a number or unit is none, and can be completed.

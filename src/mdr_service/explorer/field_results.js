@@ -111,7 +111,7 @@ export async function solveWear(inputs, query) {
       ], near),
       fieldChart("Evolution", "Worn depth", "worn_depth", edges, radius, [
         { name: "after these cycles", y: depth(now.profile) },
-        ...(hasLimit ? [{ name: "limit", y: depth(final.limiting_profile), role: "limit" }] : []),
+        ...(hasLimit ? [{ name: "limit", y: depth(final.limiting_profile), role: "second" }] : []),
       ], range ? { range } : near),
       fieldChart("Evolution", "Pressure after these cycles", "pressure", edges, radius, [
         { name: "pressure", y: now.pressure, fill: true },
