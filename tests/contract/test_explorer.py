@@ -397,6 +397,15 @@ def test_text_of_a_file_is_that_which_is_read(visit: Visit, tmp_path: Path, enco
     assert visit.page.input_value("#unit-r") == "µm"
 
 
+@pytest.mark.parametrize(("key", "depth"), [("to", "-30"), ("from", "39")])
+def test_range_without_points_is_an_error_at_its_field(visit: Visit, key: str, depth: str) -> None:
+    visit.open("?tab=fit")
+    visit.page.fill(f"#field-{key}", depth)
+    assert visit.state() == "refused"
+    problem = visit.page.locator(f".field[data-key={key}] .problem")
+    assert problem.inner_text() == "fewer than 3 points are left to fit"
+
+
 def hertz(depths: np.ndarray, modulus: float, point: float) -> np.ndarray:
     """Return the forces [N] of a ball of 10 mm over depths [m]."""
     return 4 / 3 * modulus * 0.1 * np.maximum(depths - point, 0) ** 1.5
@@ -819,7 +828,8 @@ def test_limit_of_wear_is_one_line_in_both_charts(visit: Visit) -> None:
     visit.open("?tab=wear")
     lines = visit.page.evaluate(
         """[...document.querySelectorAll(".plot")].flatMap(({ data }) =>
-            data.filter(({ name }) => name === "limit").map(({ line }) => line.color + line.dash))"""
+            data.filter((each) => each.name === "limit").map(({ line }) => line.color + line.dash)
+        )"""
     )
     assert len(lines) == 2
     assert lines[0] == lines[1]

@@ -2,8 +2,12 @@
 
 import { basics, hasLoop } from "./inputs.js";
 import { QUANTITIES } from "./quantities.js";
+import { Refusal } from "./requests.js";
 import { inSI } from "./shapes.js";
 import { numberOf } from "./units.js";
+
+// Points that a fit needs.
+const LEAST = 3;
 
 /** Return the fitted parameters with their standard errors. */
 function parametersOf(found) {
@@ -66,6 +70,10 @@ export async function solveFit(inputs, query) {
   const [begin, end] = rows ? rows.split(",").map(Number) : [0, depths.length];
   const isTaken = depths.map((depth, i) => i >= begin && i <= end && (from === "" || depth >= from) && (to === "" || depth <= to));
   const taken = (list) => list.filter((_, i) => isTaken[i]);
+  if (taken(depths).length < LEAST && depths.length >= LEAST) {
+    const pointer = to === "" ? "/from" : "/to";
+    throw new Refusal({ title: "Invalid request", errors: [{ pointer, detail: `fewer than ${LEAST} points are left to fit` }] });
+  }
   const others = (list) => list.filter((_, i) => !isTaken[i]);
   const drift = inputs.drift ? { time: taken(times), drift_rate: rate, drift_rate_error: error } : {};
   const { profile, material } = basics(inputs);
