@@ -273,7 +273,10 @@ def test_units_of_a_pasted_table_are_those_of_its_heading(visit: Visit) -> None:
         )
         assert visit.number("Contact radius a").startswith("0.186")
     visit.page.select_option("#unit-r", "mm")
-    visit.page.locator("#warnings").get_by_text("check the units of the table").wait_for()
+    warning = visit.page.locator("#warnings").get_by_text("check the units of the table")
+    assert re.search(
+        r"contact radius is [\d.]+ (mm|µm|nm), small against .* mm:", warning.inner_text()
+    )
     assert visit.page.input_value("#table").startswith("r [mm], f [nm]\n0, 0\n10000, 5\n")
     # Of the two units the user has chosen the first alone.
     visit.page.fill("#table", "\n".join(f"{r:.6g} {f:.6g}" for r, f in points))
@@ -317,7 +320,7 @@ def test_area_function_fills_the_table(visit: Visit) -> None:
     assert visit.page.input_value("#unit-r") == "nm"
     assert visit.number("Contact radius a").startswith("63.66")
     # With a term that makes A(h) negative at the end of the tip, from a height at which it holds.
-    visit.page.fill("#coefficients", f"{math.pi} -20")
+    visit.page.fill("#coefficients", f"{math.pi} -20".replace(".", ","))
     visit.page.fill("#lowest-height", "20")
     with visit.changing():
         visit.page.click(".use-area")

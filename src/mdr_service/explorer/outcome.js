@@ -26,7 +26,7 @@ export function noteOnUnits(inputs, contactRadius) {
   const spacing = (Math.max(...r) - Math.min(...r)) / (r.length - 1);
   if (inputs.kind !== "tabulated" || !(contactRadius > 0) || contactRadius > 2 * spacing) return [];
   const [a, h] = [contactRadius, spacing].map((x) => quantity(x, "length", inputs, 3));
-  return [{ code: "units", message: `the contact radius, ${a}, is small against the spacing of the points, ${h}: check the units of the table` }];
+  return [{ code: "units", message: `the contact radius is ${a}, small against the spacing of the points, ${h}: check the units of the table` }];
 }
 
 /** Show the errors, sources and warnings of a result, and further notes. */

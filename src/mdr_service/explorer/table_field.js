@@ -3,7 +3,7 @@
 import { make } from "./dom.js";
 import { mark } from "./form.js";
 import { readTable } from "./table_reader.js";
-import { numberOf } from "./units.js";
+import { read as readNumber } from "./units.js";
 
 // Points of a tip from the coefficients of its area function.
 const POINTS_OF_AREA = 200;
@@ -150,8 +150,9 @@ export function tableField(root, kind, { change, fail }) {
     target.value = "";
   });
   part(".use-area")?.addEventListener("click", () => {
-    const coefficients = part("#coefficients").value.trim().split(/[\s;]+/).map(numberOf);
-    const [least, most] = ["lowest", "largest"].map((end) => numberOf(part(`#${end}-height`).value));
+    const number = (text) => readNumber(text, "1", {});
+    const coefficients = part("#coefficients").value.trim().split(/[\s;]+/).map(number);
+    const [least, most] = ["lowest", "largest"].map((end) => number(part(`#${end}-height`).value));
     const wrong = coefficients.some(Number.isNaN) ? "enter the coefficients as numbers separated by blanks"
       : !(least >= 0 && most > least) ? "enter the heights as numbers, the lowest at least 0 and below the largest"
         : selects[1].value ? "" : "choose the unit of f above";
