@@ -941,6 +941,13 @@ def test_load_path_points_are_keyboard_accessible(visit: Visit) -> None:
     visit.page.wait_for_url("**path=100,0*")
 
 
+def test_error_of_a_load_path_names_it_and_the_point(visit: Visit) -> None:
+    visit.page.goto(f"{visit.address}?tab=cycle&path=100,0;100,40")
+    assert visit.state() == "refused"
+    problem = visit.page.inner_text("#problem")
+    assert problem.startswith("Invalid request: Load path: point 2: no equilibrium")
+
+
 def test_load_path_is_typed_from_field_to_field(visit: Visit) -> None:
     visit.open("?tab=cycle&path=100,0;100,20")
     visit.page.locator("#editor input").nth(2).select_text()

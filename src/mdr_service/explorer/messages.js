@@ -4,6 +4,7 @@ import { QUANTITIES } from "./quantities.js";
 import { format, quantity } from "./units.js";
 
 const NUMBER = String.raw`-?\d+(?:\.\d+)?(?:e[-+]?\d+)?`;
+const EACH = new RegExp(NUMBER, "g");
 // Words of the service next to numbers that have a unit -> their dimension.
 const WORDS = [
   [/(?:radius|radii)(?: of the body,| beyond| =|,)? /, "length", ""],
@@ -13,7 +14,7 @@ const WORDS = [
   ["", "displacement", / in the root mean square/],
 ];
 const PATTERNS = WORDS.map(([before, dimension, after]) =>
-  [new RegExp(`(${before.source ?? ""})(${NUMBER}(?:, ${NUMBER})*)(${after.source ?? ""})`, "g"), dimension]);
+  [new RegExp(`(${before.source ?? ""})(${NUMBER}(?:(?:, | to )${NUMBER})*)(${after.source ?? ""})`, "g"), dimension]);
 const NAMES = /\b[a-z]+(?:_[a-z]+)+\b/g;
 
 /**
@@ -25,7 +26,7 @@ export function inWords(message, inputs, labels) {
   const inUnits = (text, [pattern, dimension]) => {
     const meant = dimension === "oscillation" ? QUANTITIES[inputs.oscillation][1] : dimension;
     return text.replace(pattern, (_, before, numbers, after) =>
-      before + numbers.split(", ").map((each) => quantity(Number(each), meant, inputs)).join(", ") + after);
+      before + numbers.replace(EACH, (number) => quantity(Number(number), meant, inputs)) + after);
   };
   const label = (name) => {
     const text = labels[name] ?? QUANTITIES[name]?.[0];

@@ -87,7 +87,7 @@ function keyOf(pointer, inputs) {
 /** Return the field at a pointer, and a message about it. */
 function placed({ pointer, detail }, inputs, labels) {
   const field = document.querySelector(`.field[data-key="${keyOf(pointer, inputs)}"]:not([hidden])`);
-  const label = (field?.querySelector("label > span") ?? field?.querySelector("label"))?.textContent;
+  const label = (field?.querySelector("h2, label > span") ?? field?.querySelector("label"))?.textContent;
   const [, row] = pointer.match(/^\/profile\/[rf]\/(\d+)$/) ?? [];
   const [, point] = pointer.match(/^\/history\/\w+\/\w+\/(\d+)$/) ?? [];
   // A heading is the first line of a table that the page has written.
