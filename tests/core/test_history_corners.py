@@ -410,6 +410,25 @@ def test_nothing_slips_where_the_loads_grow_in_the_ratio_of_friction(
         )
 
 
+@pytest.mark.parametrize("share", [0.0, 0.3])
+@pytest.mark.parametrize(
+    ("pressed", "pushed", "limit"),
+    [
+        ("indentation_depth", "tangential_displacement", MU * SHIFT),
+        ("normal_force", "tangential_force", MU),
+    ],
+)
+def test_nothing_slips_where_the_loads_return_as_they_came(
+    pressed: str, pushed: str, limit: float, share: float
+) -> None:
+    """Eq. (5.71) in reverse, down to a millionth of the loads."""
+    for part in np.geomspace(0.5, 1e-6, 40):
+        loads = 0.9 * DEPTH * np.array([1.0, part, 1.0])
+        path = solve("paraboloid", **{pressed: loads, pushed: share * limit * loads})
+        assert set(path.regime) == {"stick"}
+        assert path.dissipated_energy == near(0, 1e-15 * path.elastic_energy[0])
+
+
 def test_growth_in_the_ratio_of_friction_leaves_the_regime_as_it_is() -> None:
     """After partial slip the springs that come into contact at their limit do not slip."""
     result = history.solve(

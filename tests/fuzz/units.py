@@ -15,7 +15,7 @@ UNITS: Final = (Units(1.0, 1.0), Units(1e3, 1.0), Units(1e6, 1e3))
 """m and N (Pa); mm and N (MPa); µm and mN (GPa)."""
 
 DIMENSIONS: Final[Mapping[str, tuple[int, int]]] = {
-    **dict.fromkeys(("radius", "height", "flat_radius", "rounding_radius"), (1, 0)),
+    **dict.fromkeys(("radius", "radii", "height", "flat_radius", "rounding_radius"), (1, 0)),
     **dict.fromkeys(("tip_radius", "cap_radius", "r", "f", "breaks", "uncertainty"), (1, 0)),
     **dict.fromkeys(("x", "y", "z"), (1, 0)),
     **dict.fromkeys(("indentation_depth", "contact_radius", "stick_radius"), (1, 0)),

@@ -180,7 +180,7 @@ class PolylineStack:
             by_forward = over_forward / (1 + slope) if over_forward > 0 and slope > -1 else 0.0
             by_backward = over_backward / (1 - slope) if over_backward > 0 and slope < 1 else 0.0
             in_forward = by_forward > by_backward
-            error = ADJACENT * (abs(forward) + abs(backward))
+            error = ADJACENT * (abs(self.rows[upper, FORWARD]) + abs(self.rows[upper, BACKWARD]))
             if in_forward:
                 at_vertex = self.rows[upper - 1, FORWARD] >= forward
                 other = self.rows[upper, BACKWARD] - by_forward * (1 - slope)
