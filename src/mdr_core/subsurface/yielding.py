@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter
 
 from mdr_core import normal, tangential
-from mdr_core.doubles import TINY
+from mdr_core.doubles import EPS, TINY
 from mdr_core.elementwise import number
 from mdr_core.errors import AccuracyError, DefectError, InputError
 from mdr_core.fields import graded
@@ -238,6 +238,7 @@ def _onset(
     # The first step takes the stress to grow like the mean pressure, which is exact for powers.
     means = [at(each).normal.mean_pressure for each in (load, load - _RTOL)]
     slope = log(means[0] / means[1]) / _RTOL
+    similar = isinstance(profile, PowerLaw) and slope > 1 / _REACH
     low, high, excess, before = -inf, inf, 0.0, load
     for _ in range(MAX_STEPS):
         value = _peak(foundations(at(load), body)[0][0], measure, nu)[0]
@@ -250,7 +251,8 @@ def _onset(
         slope = (found - excess) / (load - before) if load != before else slope
         step, last = -found / max(slope, 1 / _REACH), load - before
         # A step below the rounding error of the load leaves no bracket to halve.
-        if load + step == load or (excess and abs(step * last) <= _RTOL):
+        exact = load + step == load or (similar and lowest < load + step < highest)
+        if exact or (excess and abs(step * last) <= _RTOL):
             return exp(min(max(load + step, lowest), highest))
         before, excess, load = load, found, min(max(load + step, lowest), highest)
         if not low < load < high:
@@ -328,12 +330,12 @@ def _peak(
     place = np.stack([angles[k], r[i], z[j]], axis=1)
     turn = np.full(k.size, _ANGLES[1] / _FINER * under.sheared)
     box = _STEPS * np.stack([turn, np.gradient(r)[i], np.gradient(z)[j]], axis=1)
-    value, (angle, radius, depth) = _climbed(on, place, box, limit)
+    value, (angle, radius, depth) = _climbed(on, place, box, EPS * a, limit)
     return value, radius * cos(angle), abs(radius * sin(angle)), depth
 
 
 def _climbed(
-    on: Callable[..., Array], place: Array, box: Array, limit: float | None
+    on: Callable[..., Array], place: Array, box: Array, least: float, limit: float | None
 ) -> tuple[float, Array]:
     """Return the highest of the peaks next to some places, and its own place.
 
@@ -346,6 +348,7 @@ def _climbed(
     ----------
     on, limit : see `_peak`.
     place, box : angle, r and z of each start, and half the sizes of its box, shape (n, 3).
+    least : half the size at which a box is left, even at a cusp [length].
     """
     half, highest, top = box, 0.0, place[0]
     for _ in range(MAX_STEPS):
@@ -363,7 +366,11 @@ def _climbed(
             highest, top = float(value.max()), place[value.argmax()]
         rise, reach = value - values.min(axis=1), np.abs(_ACROSS[index])
         needed = value + rise > max(highest, limit or 0.0)
-        left = (rise > _FLAT * value) & (needed | (reach == 1).any(axis=1))
+        left = (
+            (rise > _FLAT * value)
+            & (needed | (reach == 1).any(axis=1))
+            & (half[:, 1:] > least).any(axis=1)
+        )
         if not left.any() or (limit is not None and highest >= limit):
             break
         half = half * np.where(reach == 1, 1 / _SHRINK, np.where(reach == 0, _SHRINK, 1.0))
