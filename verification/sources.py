@@ -71,8 +71,7 @@ SOURCES: Final = {
         "The equation of `lebedev` for any profile: tests/oracles/layer_reference.py"
     ),
     "first-order": (
-        "Limits of simpler models to first order in the tolerance, from closed forms of g' and F_N "
-        "in tests/oracles/shapes.py"
+        "Limits of simpler models, from closed forms of F_N in tests/oracles/shapes.py"
     ),
     "transverse-slip": (
         "Boundary elements with the displacements of Cerruti and Coulomb's friction: "

@@ -1,7 +1,8 @@
-"""Values up to which a simpler model is enough, from closed forms of g' and F_N.
+"""Values up to which a simpler model is enough, from closed forms of F_N.
 
-With the tolerance t adhesion changes the contact radius by t at w = E* (t a g'(a))^2/(2 pi a), and
-slip the tangential compliance at F_x/mu = F_N(a) - F_N(a (1 - 2t)). E* = 1.
+With the tolerance t adhesion changes the contact radius to a' = a (1 + t) at w = E* l^2/(2 pi a'),
+2 E* a' l = F_N(a') - F_N(a), and slip the tangential compliance, to first order in t, at F_x/mu =
+F_N(a) - F_N(a (1 - 2t)). E* = 1.
 """
 
 from collections.abc import Iterator
@@ -34,7 +35,8 @@ def cases() -> Iterator[Case]:
             "load": {"contact_radius": radius},
             "holds_within": TOLERANCE,
         }
-        work = (t * a * shape.dg(a)) ** 2 / (2 * pi * a)
+        wide = a * (1 + t)
+        work = ((shape.force(wide) - shape.force(a)) / (2 * wide)) ** 2 / (2 * pi * wide)
         slip = shape.force(a) - shape.force(a * (1 - 2 * t))
         for place, (name, value) in enumerate((("adhesion", work), ("slip", slip))):
             case = f"{profile['kind']}, a = {radius}, t = {TOLERANCE}: limit of {name}"

@@ -1,9 +1,11 @@
 """Limits within which neglected effects change a result by no more than a tolerance.
 
-Each follows from the contact radius a, g'(a) and F_N(a) to first order in the tolerance t:
+Each follows from the contact radius a and F_N(a), those of slip and thickness to first order in the
+tolerance t:
 
-* adhesion: w = E* (t a g'(a))^2/(2 pi a) changes the contact radius under a given force; a flat
-  punch has the same depth under its force, and at w = E* (t d)^2/(2 pi a) pulls off at t d;
+* adhesion: w = E* l^2/(2 pi a'), 2 E* a' l = F_N(a') - F_N(a), changes the contact radius under a
+  given force to a' = a (1 + t), at most the end of the profile; a flat punch has the same depth
+  under its force, and at w = E* (t d)^2/(2 pi a) pulls off at t d;
 * slip: F_x/mu = F_N(a) - F_N(a (1 - 2 t)) changes the tangential compliance;
 * thickness: h at which a rigid base changes the force at a given depth;
 * yield: Y = 2 tau_max below a paraboloid (Tresca);
@@ -84,13 +86,17 @@ def of_contact(contact: NormalContact, tolerance: float) -> tuple[Threshold, ...
         )
         raise InputError(("holds_within",), detail)
     profile, e_star, a = contact.profile, contact.e_star, contact.contact_radius
-    flat, loaded = profile.is_flat_punch, contact.loaded
+    flat, force, wide, within = profile.is_flat_punch, contact.normal_force, a, np.zeros_like(a)
+    retraction = tolerance * contact.indentation_depth
     with np.errstate(all="ignore"):
-        arm = contact.indentation_depth if flat else a * profile.depth_slope(contact.coordinate)
-        work = where(loaded, e_star * np.square(tolerance * arm) / (2 * pi * a), 0.0)
-        stick = np.maximum(a * (1 - 2 * tolerance), profile.first_radius)
-        within = 0.0 if flat else e_star * profile.force_within(np.ravel(stick)).reshape(a.shape)
-    slip, friction = contact.normal_force - within, "tangential_force / friction_coefficient"
+        if not flat:
+            wide = np.minimum(a * (1 + tolerance), profile.domain)
+            stick = np.maximum(a * (1 - 2 * tolerance), profile.first_radius)
+            ends = np.ravel([stick, wide])
+            within, beyond = e_star * profile.force_within(ends).reshape(2, *a.shape)
+            retraction = (beyond - force) / (2 * e_star * wide)
+        work = where(contact.loaded, e_star * np.square(retraction) / (2 * pi * wide), 0.0)
+    slip, friction = force - within, "tangential_force / friction_coefficient"
     changes = "pull_off_depth" if flat else "contact_radius"
     thickness = a / stiffening(tolerance, contact.material)
     found = [

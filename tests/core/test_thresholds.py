@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 
 from mdr_core import (
+    CappedParaboloid,
     Cone,
     FlatPunch,
     InputError,
@@ -15,6 +16,7 @@ from mdr_core import (
     Profile,
     RoundedPunch,
     Sphere,
+    TruncatedCone,
     adhesion,
     layer,
     normal,
@@ -30,7 +32,13 @@ PROFILES = (
     (Power(1.0, 4.0), 0.3),
     (RoundedPunch(0.08, 1.0), 0.1),
 )
-# The limits are of first order in the tolerance.
+# Just beyond the flat g' changes much within the tolerance.
+BESIDE_A_FLAT = (
+    (RoundedPunch(0.08, 1.0), 0.0801),
+    (TruncatedCone(0.08, 0.1), 0.0801),
+    (CappedParaboloid(0.08, 10.0, 1.0), 0.0801),
+)
+# The limits of slip and thickness are of first order in the tolerance.
 ROOM = {1e-3: (0.9, 1.1), 1e-2: (0.9, 1.1), 0.1: (0.5, 1.6)}
 
 
@@ -46,11 +54,25 @@ def test_adhesion_and_slip(profile: Profile, radius: float, tolerance: float) ->
     low, high = (tolerance * room for room in ROOM[tolerance])
     force = contact.normal_force
     sticky = adhesion.solve(profile, 1.0, float(limits["adhesion"]), normal_force=force)
-    assert low < sticky.contact_radius / radius - 1 < high
+    assert sticky.contact_radius / radius - 1 == pytest.approx(tolerance, rel=1e-9, abs=0)
     shear = 0.3 * limits["slip"]
     slipping = tangential.solve(contact, 0.8, 0.3, tangential_force=shear)
     stick = shear / (2 * 0.8 * radius)
     assert low < slipping.tangential_displacement / stick - 1 < high
+
+
+@pytest.mark.parametrize(("profile", "radius"), BESIDE_A_FLAT)
+@pytest.mark.parametrize("tolerance", ROOM)
+def test_no_more_than_the_tolerance_beside_a_flat(
+    profile: Profile, radius: float, tolerance: float
+) -> None:
+    contact = normal.solve(profile, 1.0, contact_radius=radius)
+    limits, force = _limits(contact, tolerance), contact.normal_force
+    sticky = adhesion.solve(profile, 1.0, float(limits["adhesion"]), normal_force=force)
+    assert sticky.contact_radius / radius - 1 == pytest.approx(tolerance, rel=1e-6, abs=0)
+    slipping = tangential.solve(contact, 0.8, 0.3, tangential_force=0.3 * limits["slip"])
+    stick = 0.3 * limits["slip"] / (2 * 0.8 * radius)
+    assert slipping.tangential_displacement / stick - 1 < tolerance
 
 
 def test_flat_punch_sticks_up_to_full_slip_and_pulls_off_at_the_tolerance() -> None:
