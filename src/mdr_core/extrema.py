@@ -257,8 +257,9 @@ def _refine(field: _Field, load: Indices, low: Array, high: Array, best: Array) 
     A bracket is the index of its load, and both ends in the contact coordinate, all of shape (k,).
     The peak is assumed to exceed the highest of the nine points by at most as much as that point
     exceeds the lowest. A bracket whose peak must stay below `best` is dropped. In the last bracket
-    the stress or the place varies by rounding errors.
+    the stress or the place varies by rounding errors, on the axis relative to the first bracket.
     """
+    first = high
     for _ in range(MAX_STEPS):
         at = np.clip(low[:, None] + (high - low)[:, None] * _NINE, low[:, None], high[:, None])
         values = field(np.repeat(load, _NINE.size), at.ravel()).reshape(at.shape)
@@ -269,7 +270,7 @@ def _refine(field: _Field, load: Indices, low: Array, high: Array, best: Array) 
         before, after = np.maximum(place - 1, 0), np.minimum(place + 1, _NINE.size - 1)
         low, high = at[rows, before], at[rows, after]
         left = (rise > _LEAST_STEP * np.abs(top)) & (top + rise > best[load])
-        left &= high - low > ADJACENT * high
+        left &= high - low > ADJACENT * where(low > 0, high, first)
         if not left.any():
             break
-        load, low, high = load[left], low[left], high[left]
+        load, low, high, first = load[left], low[left], high[left], first[left]

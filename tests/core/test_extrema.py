@@ -1,6 +1,6 @@
 """The maximum of a field is not below any of its values, and equals the value at its place."""
 
-from math import acosh, cosh, hypot, inf, pi, sqrt
+from math import acosh, cosh, gamma, hypot, inf, pi, sqrt
 from typing import Any
 
 import numpy as np
@@ -16,9 +16,11 @@ from mdr_core.profiles import (
     FlatPunch,
     Paraboloid,
     Power,
+    PowerTerm,
     Profile,
     RoundedCone,
     RoundedPunch,
+    Series,
     Sphere,
     SphericalTipCone,
     Tabulated,
@@ -165,6 +167,26 @@ def test_maximum_pressure_against_mpmath(fields_of: dict[str, Any], a: float) ->
     expected = E_STAR * reference_maximum(shape_of(fields_of), a, float(radii[place]), spacing)
     error = abs(mpf(float(contact.maximum_pressure)) / expected - 1)
     assert error <= contact.error_estimate
+
+
+def test_cusp_on_the_axis_takes_few_evaluations(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The pressure falls from p(0) = (1/pi) sum kappa C n/(n - 1) a^(n-1) like r^0.03."""
+    calls: list[None] = []
+
+    def counted(*given: Any) -> Any:
+        calls.append(None)
+        return kernel(*given)
+
+    kernel, terms = Series.pressure_kernel_at, {1.03: 0.3, 3.0: 1.0}
+    monkeypatch.setattr(Series, "pressure_kernel_at", counted)
+    a, expected = np.array([1e-3, 1.0]), np.zeros(2)
+    for n, coefficient in terms.items():
+        kappa = sqrt(pi) * gamma(n / 2 + 1) / gamma((n + 1) / 2)
+        expected += kappa * coefficient * n / (n - 1) * a ** (n - 1) / pi
+    profile = Series(tuple(PowerTerm(c, n) for n, c in terms.items()))
+    contact = normal.solve(profile, 1.0, contact_radius=a)
+    assert contact.maximum_pressure == pytest.approx(expected, rel=1e-12, abs=0)
+    assert len(calls) < 30
 
 
 @pytest.mark.parametrize("seed", range(6))

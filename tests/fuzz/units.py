@@ -21,7 +21,9 @@ DIMENSIONS: Final[Mapping[str, tuple[int, int]]] = {
     **dict.fromkeys(("indentation_depth", "contact_radius", "stick_radius"), (1, 0)),
     **dict.fromkeys(("tangential_displacement", "body_thickness"), (1, 0)),
     **dict.fromkeys(("normal_force", "tangential_force"), (0, 1)),
-    **dict.fromkeys(("e_star", "g_star", "youngs_modulus", "yield_strength"), (-2, 1)),
+    **dict.fromkeys(("e_star", "g_star", "shear_modulus"), (-2, 1)),
+    **dict.fromkeys(("youngs_modulus", "yield_strength"), (-2, 1)),
+    "torque": (1, 1),
     "wear_coefficient": (2, -1),
 }
 """Powers of length and force in the members of a query, by name."""
