@@ -153,7 +153,8 @@ class NormalContact(validity.ResultsOverLoads):
         kernel = (3 * root * shares**2 * weights).reshape(x.shape) / x
         of_edge = fit.spread_at(a)[0] * (self.control != "contact_radius") / root[..., 0]
         size = np.hypot(fit.spread_of(x, kernel).reshape(r.shape), of_edge).max(axis=0) / np.pi
-        largest = np.ravel(self.maximum_pressure / self.e_star)
+        # The largest pressure of an adhesive contact may be a tension.
+        largest = np.abs(np.ravel(self.maximum_pressure / self.e_star))
         known = np.isfinite(largest) & (largest > 0)
         part = np.where(known, size / np.where(known, largest, 1.0), np.inf)
         return np.where(loaded, part.reshape(np.shape(loaded)), 0.0)[()]

@@ -44,6 +44,20 @@ def test_negative_loads_reach_the_pull_off(client: Client) -> None:
     )
 
 
+def test_table_whose_largest_pressure_is_a_tension(client: Client) -> None:
+    """Near the pull-off of r^4 the whole contact is in tension."""
+    r = np.linspace(0.0, R, 40)
+    table = {"kind": "tabulated", "r": r.tolist(), "f": (r**4 / R**3).tolist()}
+    least = answer(client, "normal", LOADED | {"profile": table})["pull_off_force"][0]
+    load = {"normal_force": [0.9 * least, -1e-3 * least]}
+    found = answer(client, "normal", {"profile": table, "load": load})
+    tension, pressure = found["maximum_pressure"]
+    assert tension < 0 < pressure
+    # The two errors of the pressure are of one size.
+    errors = np.array(found["pressure_data_error"]) * [-tension, pressure]
+    assert 0 < errors[0] == pytest.approx(errors[1], rel=0.3, abs=0)
+
+
 def test_pull_off_depth_has_an_infinite_stiffness(client: Client) -> None:
     depth = answer(client, "normal", LOADED)["pull_off_depth"][0]
     found = answer(client, "normal", {"load": {"indentation_depth": depth}})
