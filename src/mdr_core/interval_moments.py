@@ -77,7 +77,19 @@ class IntervalMoments:
     def contact_coordinate(self, normal: Array) -> Array:
         """Contact coordinate of a normal coordinate; rounding may put it just beyond the domain."""
         normal = np.minimum(normal, self.profile.largest_loads[self.over_forces])
-        return self.profile.coordinate_from_load(normal, of_force=self.over_forces)
+        found = self.profile.coordinate_from_load(normal, of_force=self.over_forces)
+        if not has_many_breaks(self.profile):
+            return found
+        # Beyond a break of a table g' may be many orders of magnitude larger than below, so that
+        # the normal coordinate decides on which side of the break a rounded place lies.
+        index, breaks = self._at_breaks.searchsorted(normal), self.profile.coordinate_breaks
+        least, most = np.append(0.0, np.nextafter(breaks, inf)), np.append(breaks, inf)
+        return np.clip(found, least[index], most[index])
+
+    @cached_property
+    def _at_breaks(self) -> Array:
+        """Normal coordinates of the breaks."""
+        return self.normal(self.profile.coordinate_breaks)
 
     def over(self, low: Array, span: Array, ends: Array) -> Moments:
         """Return the moments over the intervals [low, low + span], shape (m,).

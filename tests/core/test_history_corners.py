@@ -410,6 +410,22 @@ def test_nothing_slips_where_the_loads_grow_in_the_ratio_of_friction(
         )
 
 
+@pytest.mark.parametrize("beyond", [1e-12, 1e-9, 1e-4])
+def test_dissipated_energy_just_beyond_the_flat_of_a_table(beyond: float) -> None:
+    """Slip stops at the flat: from there to full slip no energy is dissipated."""
+    b, r = 0.3331961512716172, np.linspace(0.0, 1.0, 79)
+    table = Tabulated(r, np.maximum(r - b, 0.0), breaks=(b,))
+    contact = normal.solve(table, E_STAR, contact_radius=b * (1 + beyond))
+    limit = MU * contact.normal_force
+    path = history.solve(
+        *(table, E_STAR, G_STAR, MU),
+        normal_force=float(contact.normal_force),
+        tangential_force=[0.0, 0.9999 * limit, (1 - 1e-6) * limit, (1 - 1e-9) * limit],
+    )
+    spent = path.dissipated_energy[1:]
+    assert spent == pytest.approx(spent[0], rel=1e-3, abs=0)
+
+
 @pytest.mark.parametrize("share", [0.0, 0.3])
 @pytest.mark.parametrize(
     ("pressed", "pushed", "limit"),
