@@ -317,6 +317,15 @@ def test_tractions_at_the_origin(exponent: float, stick: float) -> None:
             assert np.abs(np.array(beside) - expected).max() < 1e-11 * p
 
 
+@pytest.mark.parametrize("z", [1e-5, 1e-31, 1e-40])
+def test_axis_of_a_cone_however_near_its_tip(z: float) -> None:
+    """sigma_zz = -(E* t/2) (ln(sqrt(1 + z^2)/z) + 1/(1 + z^2)), z in contact radii."""
+    contact = normal.solve(Cone(0.1), 1.0, contact_radius=1.0)
+    found = float(stress(contact, 0.0, 0.0, z, poissons_ratio=0.3).zz)
+    expected = -0.05 * (np.log(np.hypot(1, z) / z) + 1 / (1 + z * z))
+    assert found == pytest.approx(expected, rel=1e-13, abs=0)
+
+
 @pytest.mark.parametrize("body", [1, 2])
 @pytest.mark.parametrize("end", ["sliding", "reversed"])
 def test_stresses_are_infinite_at_the_tip_of_a_cone(end: str, body: int) -> None:

@@ -136,13 +136,14 @@ def on_rings(under: Foundation, place: Rings, nu: float) -> StressTensor:
     load, (r, z, e) = under.load, place
     if not under.loaded:
         return StressTensor(*np.zeros((6, *e.shape)))
-    edges = [0.0, *load.radius, *map(float, load.profile.breaks)]
-    near = np.abs(np.subtract.outer(edges, r)).min(axis=0)
+    edges = np.array([0.0, *load.radius, *map(float, load.profile.breaks)])[:, None]
+    near = np.maximum(np.abs(edges - r), np.spacing(edges)).min(axis=0)
+    center = (z == 0) & (r == 0)
     # On the surface the kernels are singular.
-    depth = np.maximum(z, EPS * np.maximum(near, np.spacing(load.radius[-1])))
+    depth = np.maximum(z, EPS * np.where(center, load.radius[-1], near))
     moments = under.moments(r, depth)
     infinite = (z == 0) & np.isin(r, under.infinite_radii)
-    origin = (z == 0) & (r == 0) & ~infinite
+    origin = center & ~infinite
     if origin.any() and not load.profile.is_flat_punch:
         # Powers next to a cone approach the tractions there slowly. Om_r/r is a half of V_z.
         whole = load._replace(slope=np.ones_like(load.slope))
