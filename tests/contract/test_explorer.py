@@ -567,6 +567,44 @@ def test_loop_tells_friction_and_shear_modulus(visit: Visit, rig: str) -> None:
         visit.page.locator("#problem").get_by_text("partial slip cannot tell").wait_for()
 
 
+def test_columns_of_a_loop_are_taken_only_if_they_leave_no_choice(
+    visit: Visit, tmp_path: Path
+) -> None:
+    visit.open("?tab=fit&kind=paraboloid&radius=0.01&e1=rigid&e2=1.5e9&nu2=0.5&load=10")
+    with visit.changing():
+        visit.page.select_option("#field-measured", "loop")
+    points = enumerate(zip(*mindlin_loop(1e-6), strict=True))
+    rows = [[f"{i}", f"{1e6 * x:.9g}", f"{f:.9g}", "10"] for i, (x, f) in points]
+    titles = ["Time [s]", "Position [µm]", "Tangential force [N]", "Normal force [N]"]
+    file = tmp_path / "loop.csv"
+    columns = visit.page.locator("#curve-fields .columns select")
+
+    def is_read(count: int) -> None:
+        assert [columns.nth(i).input_value() for i in (0, 1)] == ["2", "3"]
+        assert visit.page.locator("#curve-note").inner_text() == (
+            f"{count} points. Column 2, “Position”, is taken as the displacement. "
+            "Column 3, “Tangential force”, is taken as the force."
+        )
+        fitted = visit.number("Coefficient of friction µ").split()[0]
+        assert float(fitted) == pytest.approx(0.3, rel=1e-3, abs=0)
+
+    file.write_text("\n".join(";".join(row) for row in [titles, *rows]), "utf-8")
+    visit.page.set_input_files("#curve-file", file)
+    problem = visit.page.locator("#problem-curve")
+    problem.get_by_text("choose the columns of u and F").wait_for()
+    assert visit.state() == "unreadable"
+    assert [columns.nth(i).input_value() for i in (0, 1)] == ["", ""]
+    columns.nth(0).select_option("2")
+    with visit.changing():
+        columns.nth(1).select_option("3")
+    is_read(161)
+    # Beside the time there are only two columns.
+    file.write_text("\n".join(";".join(row[:3]) for row in [titles, *rows[:121]]), "utf-8")
+    with visit.changing():
+        visit.page.set_input_files("#curve-file", file)
+    is_read(121)
+
+
 def test_line_of_a_table_that_cannot_be_used_is_named(visit: Visit) -> None:
     visit.open("?kind=tabulated")
     problem = visit.page.locator("#problem-table")

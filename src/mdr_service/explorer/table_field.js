@@ -41,6 +41,8 @@ export function tableField(root, kind, { change, fail }) {
   let { heads } = kind;
   // Text or bytes that were read last, and the columns that were chosen.
   let given = [];
+  // The columns of a friction loop are read as those of a curve, whose names do not decide them.
+  const isLoop = () => heads[0] !== kind.heads[0];
   // The table whose text the field holds, and the number of the newest text, which is being read.
   let [shown, newest, pending] = [null, 0, false];
 
@@ -48,8 +50,7 @@ export function tableField(root, kind, { change, fail }) {
     [heads.map((head, i) => `${head} [${units[i]}]`).join(", "), ...r.map((x, i) => `${x}, ${f[i]}`)].join("\n");
 
   const describe = ({ r, notes = [] }) => {
-    // The notes name the columns of a curve over depth, not those of a loop.
-    const said = heads[0] === kind.heads[0] ? notes : [];
+    const said = isLoop() ? notes.map((note) => note.replace("as the depth", "as the displacement")) : notes;
     part(".count").textContent = [`${r.length} points.`, ...said].join(" ");
   };
 
@@ -85,8 +86,11 @@ export function tableField(root, kind, { change, fail }) {
     // A newer text is being read.
     if (turn !== newest) return;
     pending = false;
-    offerColumns(content, result.columns ?? [], result.taken ?? []);
+    // Two columns, or two beside the time, leave no choice.
+    const isOpen = isLoop() && !columns && result.columns?.length > (result.times ? 3 : 2);
+    offerColumns(content, result.columns ?? [], (isOpen ? null : result.taken) ?? []);
     try {
+      if (isOpen) throw new Error(`choose the columns of ${heads.join(" and ")}`);
       if (result instanceof Error) throw result;
       const { units: named, ...table } = result;
       named.forEach((name, i) => (own[i] &&= !name));
