@@ -561,6 +561,12 @@ def test_segments_named_in_comments_are_those_of_the_rows_beneath(tmp_path: Path
         ("Lateral Deflection [N];Height [m];Tip Position [m];Vertical Deflection [N]", (2, 3)),
         ("Fx, N;Position (x), mm;Position (z), mm;Fz, N", (2, 3)),
         ("Sep (m);ZSnsr (m);Ind (m);Force (N)", (2, 3)),
+        ("X [µm];Fx [N];Z [µm];Fz [N]", (2, 3)),
+        ("Position [µm];Tangential force [N];Depth [nm];Normal force [N]", (2, 3)),
+        ("Weg [µm];Kraft [N];Eindringtiefe [nm];Normalkraft [N]", (2, 3)),
+        ("Position [µm];Force [N];Profondeur [nm];Force normale [N]", (2, 3)),
+        ("Lateral displacement [µm];Friction force [N];Depth [nm];Load [N]", (2, 3)),
+        ("Travel [mm];Force [N];Pd [nm];Normal load [N]", (2, 3)),
     ],
 )
 def test_corrected_columns_have_priority_over_raw_and_lateral_ones(
