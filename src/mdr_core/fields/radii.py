@@ -10,6 +10,7 @@ from typing import Final, NamedTuple, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mdr_core.abel.annulus import Annulus
 from mdr_core.adhesion import AdhesiveContact
 from mdr_core.doubles import ADJACENT, ROUNDING
 from mdr_core.elementwise import broadcast, some, where
@@ -17,6 +18,7 @@ from mdr_core.errors import InputError
 from mdr_core.history import ContactState, LoadHistory
 from mdr_core.layer import LayerContact
 from mdr_core.normal import NormalContact, solve
+from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.torsion import TorsionalContact
 from mdr_core.typing import Array
@@ -81,16 +83,20 @@ def _near_axis(contact: NormalContact, c: Array, scale: Array) -> tuple[Array, A
     """Return the distances over which stresses and displacements change next to a slip front.
 
     A front c moves the stress by (E*/pi) g'(c) dc/sqrt(c^2 - r^2), and the foundation by g'(c) dc.
-    For c < a/2 the changes are divided by the mean pressure F_N/(pi a^2) and by the depth. For
-    larger c, and next to a flat, which c does not reach, both distances are `scale`.
+    For c < a/2 the changes are divided by the depth, and by the mean pressure F_N/(pi a^2) or the
+    stress that slip outside c causes on the axis. For larger c, and next to a flat, which c does
+    not reach, both distances are `scale`.
     """
     profile, top, a = contact.profile, contact.coordinate, contact.contact_radius
     inner = (c > 0) & (c < a / 2) & (profile.first_radius == 0)
-    if not some(inner):
+    if profile.swept or not some(inner):
         return scale, scale
     with np.errstate(all="ignore"):
-        slope = profile.dg(c)
-        stress = c * np.square(profile.reduced_force(top) / (2 * a * a * slope))
+        slope, on_axis = profile.dg(c), np.zeros(inner.shape)
+        high, low = (part[inner] for part in np.broadcast_arrays(top, c))
+        on_axis[inner] = profile.pressure_kernel(Annulus(high, high - low, low), 0 * low)
+        size = np.maximum(profile.reduced_force(top) / (np.pi * a * a), on_axis)
+        stress = c * np.square(np.pi / 2 * size / slope)
         return where(inner, stress, scale), where(inner, profile.depth(top) / slope, scale)
 
 
@@ -113,13 +119,22 @@ def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) ->
     radius = np.atleast_1d(np.asarray(radius, dtype=float))
     known = edges(contact)
     if name == "slip":
-        # Slip grows as (r - c)^(3/2) from a front, and is small at radii next to c.
+        # Slip grows as (r - c)^(3/2) from a front, and is small at radii next to c. Far from c it
+        # is of the size of g(r), and changes with c by g'(c) dc.
         count, reach = known.radius.size, known.reach.copy()
         fronts = slice(-1) if isinstance(contact, ContactState) else slice(count // 2, count)
-        beyond = 2 / 3 * (radius.max(initial=0.0) - known.radius[fronts])
-        reach[fronts] = where(beyond > 0, np.minimum(reach[fronts], beyond), inf)
+        profile, c = _profile(contact), known.radius[fronts]
+        last = radius[radius <= known.radius.max()].max(initial=0.0)
+        with np.errstate(all="ignore"):
+            rise = (profile.g(last) - profile.g(c)) / profile.dg(c)
+        beyond = 2 / 3 * np.maximum(last - c, rise)
+        reach[fronts] = where(last > c, np.minimum(reach[fronts], beyond), inf)
         known = known._replace(reach=reach)
     return error_near(known, radius, root=stress)
+
+
+def _profile(contact: Contact | ContactState) -> Profile:
+    return (contact if isinstance(contact, ContactState) else contact.normal).profile
 
 
 def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
@@ -140,8 +155,10 @@ def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
     above = r[r.searchsorted(at + away, side="right")] - at
     nearest = np.minimum(below, where(above <= error, above, inf))
     # Next to an infinite stress the error is relative to the local stress.
-    size = where(scale < inf, 2 * np.sqrt(nearest * scale), nearest)
-    return float((error / size).max())
+    # The slope of a root is largest at its end moved towards r, and a move beyond r changes the
+    # stress by its value at a distance `error`.
+    root = np.sqrt(scale * np.maximum(4 * (nearest - error), error))
+    return float((error / where(scale < inf, root, nearest)).max())
 
 
 def own_error(contact: NormalContact | TangentialContact | LoadHistory) -> float:
@@ -171,7 +188,7 @@ def grid(contact: Contact | ContactState, points: int) -> Array:
     InputError : fewer points than edges and breaks.
     """
     known = edges(contact)
-    profile = (contact if isinstance(contact, ContactState) else contact.normal).profile
+    profile = _profile(contact)
     breaks = [np.ravel(np.asarray(b, dtype=float)) for b in profile.breaks]
     end = 1.5 * float(np.max(known.radius)) or 1.0
     if not profile.is_flat_punch:
