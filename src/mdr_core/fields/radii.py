@@ -1,7 +1,7 @@
 """Grids of radii, and the error of fields due to the rounding error of computed edges.
 
 A contact radius or slip front that follows from a load has a rounding error. A stress has a root at
-each of them, so that its error grows without bound next to an edge. Source: notes, §8.
+each of them, so that its error grows towards an edge. Source: notes, §8.
 """
 
 from math import inf
@@ -12,13 +12,12 @@ from numpy.typing import ArrayLike
 
 from mdr_core.abel.annulus import Annulus
 from mdr_core.adhesion import AdhesiveContact
-from mdr_core.doubles import ADJACENT, ROUNDING
+from mdr_core.doubles import ADJACENT, EPS, ROUNDING
 from mdr_core.elementwise import broadcast, some, where
 from mdr_core.errors import InputError
 from mdr_core.history import ContactState, LoadHistory
 from mdr_core.layer import LayerContact
 from mdr_core.normal import NormalContact, solve
-from mdr_core.profiles import Profile
 from mdr_core.tangential import TangentialContact
 from mdr_core.torsion import TorsionalContact
 from mdr_core.typing import Array
@@ -55,7 +54,7 @@ def edges(contact: Contact | ContactState) -> Edges:
         depth = max(contact.indentation_depth, 0.0)
         end = solve(contact.profile, contact.e_star, indentation_depth=depth)
         error = end.edge_errors * radius + np.append(contact.front_errors, 0.0)
-        return Edges(radius, error, *_near_axis(end, radius, scale))
+        return Edges(radius, error, *_near_axis(end, radius, error, scale))
     needed = "a contact, or the state of a load history"
     if isinstance(contact, AdhesiveContact):
         a = np.ravel(contact.contact_radius)
@@ -74,12 +73,12 @@ def edges(contact: Contact | ContactState) -> Edges:
         # The stress of a twist rises in the stick zone from 0 at the axis to mu p(c).
         at_c = reach = np.minimum(scale, c)
     else:
-        at_c, reach = _near_axis(normal, c, scale)
+        at_c, reach = _near_axis(normal, c, contact.stick_error, scale)
     parts = (a, c), (error, contact.stick_error), (scale, at_c), (scale, reach)
     return Edges(*(np.ravel([broadcast(part, c.shape) for part in pair]) for pair in parts))
 
 
-def _near_axis(contact: NormalContact, c: Array, scale: Array) -> tuple[Array, Array]:
+def _near_axis(contact: NormalContact, c: Array, error: Array, scale: Array) -> tuple[Array, Array]:
     """Return the distances over which stresses and displacements change next to a slip front.
 
     A front c moves the stress by (E*/pi) g'(c) dc/sqrt(c^2 - r^2), and the foundation by g'(c) dc.
@@ -92,11 +91,12 @@ def _near_axis(contact: NormalContact, c: Array, scale: Array) -> tuple[Array, A
     if profile.swept or not some(inner):
         return scale, scale
     with np.errstate(all="ignore"):
-        slope, on_axis = profile.dg(c), np.zeros(inner.shape)
+        slope = np.maximum(profile.dg(c), profile.dg(np.minimum(c + error, a)))
         high, low = (part[inner] for part in np.broadcast_arrays(top, c))
+        on_axis = np.zeros(inner.shape)
         on_axis[inner] = profile.pressure_kernel(Annulus(high, high - low, low), 0 * low)
-        size = np.maximum(profile.reduced_force(top) / (np.pi * a * a), on_axis)
-        stress = c * np.square(np.pi / 2 * size / slope)
+        size = np.maximum(profile.reduced_force(top) / (2 * a * a), np.pi / 2 * on_axis)
+        stress = c * np.square(size / slope)
         return where(inner, stress, scale), where(inner, profile.depth(top) / slope, scale)
 
 
@@ -105,7 +105,7 @@ def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) ->
 
     Edges are the contact radius and the slip fronts if they follow from a load. Radii within four
     units in the last place of an edge are excluded, because the relative error at a root is
-    unbounded.
+    unbounded, unless the edge has lost half of its digits.
 
     Parameters
     ----------
@@ -123,18 +123,14 @@ def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) ->
         # is of the size of g(r), and changes with c by g'(c) dc.
         count, reach = known.radius.size, known.reach.copy()
         fronts = slice(-1) if isinstance(contact, ContactState) else slice(count // 2, count)
-        profile, c = _profile(contact), known.radius[fronts]
-        last = radius[radius <= known.radius.max()].max(initial=0.0)
+        profile = (contact if isinstance(contact, ContactState) else contact.normal).profile
+        c, last = known.radius[fronts], radius[radius <= known.radius.max()].max(initial=0.0)
         with np.errstate(all="ignore"):
             rise = (profile.g(last) - profile.g(c)) / profile.dg(c)
         beyond = 2 / 3 * np.maximum(last - c, rise)
         reach[fronts] = where(last > c, np.minimum(reach[fronts], beyond), inf)
         known = known._replace(reach=reach)
     return error_near(known, radius, root=stress)
-
-
-def _profile(contact: Contact | ContactState) -> Profile:
-    return (contact if isinstance(contact, ContactState) else contact.normal).profile
 
 
 def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
@@ -149,9 +145,9 @@ def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
     if not root:
         return float((2 * error / reach).max())
     # Take the nearest radii on either side of each edge. An edge does not change stresses outside.
-    r, away = np.concatenate([(-inf,), radius, (inf,)]), at * ADJACENT
+    r, away = np.concatenate([(-inf,), radius, (inf,)]), at * ADJACENT * (error < EPS**0.5 * at)
     r.sort()
-    below = at - r[r.searchsorted(at - away) - 1]
+    below = at - r[r.searchsorted(at - away, side="right") - 1]
     above = r[r.searchsorted(at + away, side="right")] - at
     nearest = np.minimum(below, where(above <= error, above, inf))
     # Next to an infinite stress the error is relative to the local stress.
@@ -188,7 +184,7 @@ def grid(contact: Contact | ContactState, points: int) -> Array:
     InputError : fewer points than edges and breaks.
     """
     known = edges(contact)
-    profile = _profile(contact)
+    profile = (contact if isinstance(contact, ContactState) else contact.normal).profile
     breaks = [np.ravel(np.asarray(b, dtype=float)) for b in profile.breaks]
     end = 1.5 * float(np.max(known.radius)) or 1.0
     if not profile.is_flat_punch:
