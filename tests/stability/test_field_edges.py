@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mpmath import cbrt, isfinite, mpf, pi, sqrt, workdps
+from mpmath import acos, acosh, cbrt, isfinite, log, mpf, pi, root, sin, sqrt, workdps
 
 from mdr_core import fields, history, normal, subsurface, tangential
-from mdr_core.profiles import Paraboloid
+from mdr_core.profiles import Cone, Paraboloid, Power, Profile
 from tests.core.comparison import profile_from, stored
 from tests.oracles import slip_reference
 from tests.oracles.slip_reference import Material, setting
@@ -180,3 +180,92 @@ def test_estimate_next_to_full_slip_is_that_of_the_stick_zone(seed: int) -> None
     # A response states four times this bound.
     places = np.append(0.0, outside), 0.0, [[0.0], [0.3 * float(contact.contact_radius)]]
     assert subsurface.error_estimate(single, *places) <= 1e-5 / 4
+
+
+#: Profiles of one exponent n, and g(x)/x^n.
+TIPS: dict[str, tuple[Profile, int, mpf]] = {
+    "cone": (Cone(0.2), 1, pi / 2 * mpf(0.2)),
+    "paraboloid": (Paraboloid(2.0), 2, 1 / mpf(2.0)),
+    "quartic": (Power(0.3, 4.0), 4, mpf(8) / 3 * mpf(0.3)),
+}
+
+
+def one_unit_below(name: str, force: float) -> tuple[tangential.TangentialContact, mpf, mpf]:
+    """A contact one unit in the last place below full slip, and the exact radii a and c."""
+    profile, n, height = TIPS[name]
+    contact = normal.solve(profile, 1.0, normal_force=force)
+    pushed = float(np.nextafter(MU * force, 0.0))
+    left = mpf(force) - mpf(pushed) / mpf(MU)
+    radii = (root(load * (n + 1) / (2 * n * height), n + 1) for load in (mpf(force), left))
+    return tangential.solve(contact, 1.0, MU, tangential_force=pushed), *radii
+
+
+def traction(name: str, a: mpf, c: mpf, r: mpf) -> mpf:
+    """(mu/pi) int g'(x)/sqrt(x^2 - r^2) dx from c or r to a."""
+    _, n, height = TIPS[name]
+
+    def below(x: mpf) -> mpf:
+        if n == 1:
+            return log(x) if r == 0 else acosh(max(x / r, 1))
+        rise = sqrt(max(x * x - r * r, 0))
+        return 2 * rise if n == 2 else 4 * rise**3 / 3 + 4 * r * r * rise
+
+    return MU * height / pi * (below(a) - below(c))
+
+
+def slip(name: str, _: mpf, c: mpf, r: mpf) -> mpf:
+    """-(2 mu/pi) int (g(x) - g(c))/sqrt(r^2 - x^2) dx from c to r, with x = r cos t."""
+    _, n, height = TIPS[name]
+    t = acos(min(c / max(r, c), 1))
+    power = {1: sin(t), 2: t / 2 + sin(2 * t) / 4, 4: (12 * t + 8 * sin(2 * t) + sin(4 * t)) / 32}
+    return -2 * MU * height / pi * (r**n * power[n] - c**n * t)
+
+
+#: Radii over c and over a, which are next to the stick edge, far away, or both.
+NEXT, FAR = np.array([0.1, 0.99, 1 - 1e-9, 1.0, 1.001, 2.0]), np.array([0.0, 0.1, 0.5, 0.9])
+PLACES = (NEXT, FAR), (0 * FAR, FAR), (NEXT, 0 * FAR)
+
+
+@pytest.mark.parametrize("force", [0.7, 1.1, 1.9, 2.3, 5.9])
+@pytest.mark.parametrize("field", [traction, slip])
+@pytest.mark.parametrize("name", TIPS)
+def test_estimate_one_unit_below_full_slip(name: str, field: Any, force: float) -> None:
+    """The estimate exceeds the error by at most ten times what the error of c may change."""
+    with workdps(40):
+        contact, a, c = one_unit_below(name, force)
+        at, moved = mpf(float(contact.stick_radius)), mpf(float(contact.stick_error))
+        evaluated = fields.slip if field is slip else fields.shear_stress
+        for inner, outer in PLACES:
+            radii = np.append(inner * float(at), outer * float(a))
+            exact, *ends = (
+                [field(name, a, edge, mpf(r)) for r in radii.tolist()]
+                for edge in (c, at - moved, at + moved)
+            )
+            largest = max(map(abs, exact))
+            error, *possible = (
+                max(abs(x - y) for x, y in zip(values, exact, strict=True)) / largest
+                for values in (evaluated(contact, radii).tolist(), *ends)
+            )
+            field_name = evaluated.__name__
+            bound = fields.own_error(contact) + fields.edge_error(contact, field_name, radii)
+            assert error <= bound <= 10 * max(possible) + 1e-11
+
+
+@pytest.mark.parametrize("force", [0.7, 1.1, 1.9, 2.3, 5.9])
+@pytest.mark.parametrize("name", TIPS)
+def test_estimate_beneath_one_unit_below_full_slip(name: str, force: float) -> None:
+    """The reference has the exact stick radius, prescribed."""
+    with workdps(40):
+        contact, _, true = one_unit_below(name, force)
+    exact = tangential.solve(contact.normal, 1.0, MU, stick_radius=float(true))
+    a, c = float(contact.normal.contact_radius), float(contact.stick_radius)
+    depths = np.array([0.0, 1e-6 * c, 0.1 * c, c, 0.1 * a])[:, None]
+    for radii in (c * np.array([0.5, 0.999, 1.0, 1.001, 3.0]), a * np.array([0.1, 0.5])):
+        found, truth = (
+            np.array(subsurface.stress(one, radii, 0.0, depths, poissons_ratio=0.5, body=2))
+            for one in (contact, exact)
+        )
+        error = np.abs(found - truth).max() / np.abs(truth).max()
+        bound = subsurface.error_estimate(contact, radii, 0.0, depths)
+        assert error <= bound <= (0.1 if name == "cone" else 1e-5)
+        assert bound <= 1e-10 or radii[-1] < a / 100
