@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import fields
 from mdr_core.adhesion import AdhesiveContact
-from mdr_core.doubles import EPS, TINY
+from mdr_core.doubles import EPS
 from mdr_core.fields.radii import Edges, error_near
 from mdr_core.history import ContactState
 from mdr_core.subsurface.foundation import Contact, Foundation, foundations
@@ -191,7 +191,7 @@ def error_estimate(contact: Contact, x: ArrayLike, y: ArrayLike, z: ArrayLike) -
         far = np.hypot(r - at, z)
         # The stress of a moved front falls from 1/sqrt(c D) to c/D^2, of which a tangential force
         # has 2(1 + nu) in sigma_xx. Next to it sigma_xx has twice the root of the traction.
-        far *= np.maximum(far / max(2 * at, TINY), 1.0) ** 3
+        far *= np.maximum(far / (2 * at or inf), 1.0) ** 3
         near = max(near, sqrt(2) * error_near(edge, at - far, root=True))
     own = 0.0 if isinstance(contact, ContactState) else 4 * fields.own_error(contact)
     return MOMENT_ERROR + own + near
