@@ -153,8 +153,8 @@ def error_near(edges: Edges, radius: Array, *, root: bool) -> float:
     # Next to an infinite stress the error is relative to the local stress.
     # The slope of a root is largest at its end moved towards r, and a move beyond r changes the
     # stress by its value at a distance `error`.
-    root = np.sqrt(scale * np.maximum(4 * (nearest - error), error))
-    return float((error / where(scale < inf, root, nearest)).max())
+    size = np.sqrt(scale * np.maximum(4 * (nearest - error), error))
+    return float((error / where(scale < inf, size, nearest)).max())
 
 
 def own_error(contact: NormalContact | TangentialContact | LoadHistory) -> float:

@@ -79,7 +79,8 @@ def fit_table(
     InputError : points of no body whose contact area is a single disc.
     """
     points = cleaned(r, f, breaks)
-    found = _likeliest(points, None if uncertainty is None else uncertainty / points.scale[1])
+    relative = None if uncertainty is None else uncertainty / points.scale[1]
+    found = _likeliest(_weighted(points, relative), relative)
     if found.rms > _NO_DISC * points.scale[1]:
         largest, radius = found.largest
         advice = off_axis(r, f)
@@ -93,30 +94,23 @@ def fit_table(
     return found
 
 
-def _likeliest(points: TablePoints, uncertainty: float | None) -> TableFit:
-    """Return the likeliest admissible fit.
-
-    Parameters
-    ----------
-    uncertainty : standard uncertainty of the heights over their range; None to estimate it.
-    """
+def _weighted(points: TablePoints, uncertainty: float | None) -> TableBasis:
+    """Return the splines of the points, which their digits weight where these are the noise."""
     basis = TableBasis(points)
     if uncertainty is None and np.ptp(points.rounding) > 0:
         most = _Model(basis, None, np.ones(1 + len(points.breaks), dtype=bool), np.inf)
         _, excess = _admissible(basis, most)
         if excess * most.sigma[most.at] < _ROUNDED * root_mean_square(points.rounding):
-            basis = TableBasis(points.by_digits)
-    tried, coefficients, best, excess = _chosen(basis, uncertainty)
-    blind = bool(points.x[0] > basis.knots[1] / 2)
-    return basis.fit(coefficients, *_spread(tried, best, excess, blind=blind))
+            return TableBasis(points.by_digits)
+    return basis
 
 
-def _chosen(
-    basis: TableBasis, uncertainty: float | None
-) -> tuple[list["_Model"], Array, "_Model", float]:
-    """Return all models that were tried, and the likeliest admissible fit.
+def _likeliest(basis: TableBasis, uncertainty: float | None) -> TableFit:
+    """Return the likeliest admissible fit.
 
-    It is given by its coefficients, its model, and its deviation over the noise, 1 or more.
+    Parameters
+    ----------
+    uncertainty : standard uncertainty of the heights over their range; None to estimate it.
     """
 
     def models(jumps: Flags) -> "list[_Model]":
@@ -139,7 +133,8 @@ def _chosen(
         score = each.least + 2 * max(each.left_over, 1) * np.log(excess)
         found.append((score, coefficients, each, excess))
     _, coefficients, best, excess = min(found, key=lambda fit: fit[0])
-    return tried, coefficients, best, excess
+    blind = bool(basis.points.x[0] > basis.knots[1] / 2)
+    return basis.fit(coefficients, *_spread(tried, best, excess, blind=blind))
 
 
 def _admissible(basis: TableBasis, chosen: "_Model") -> tuple[Array, float]:
