@@ -291,7 +291,7 @@ def unit_of(text: str) -> tuple[str, str, float] | None:
             symbol = {"length": "m", "force": "N"}.get(measure, name) if size == 1 else name
             sign = next((p for p, e in _PREFIXES.items() if e == power), f"10^{power} ")
             return measure, f"{sign}{symbol}", size * float(f"1e{power}")
-    # A power of ten before a square multiplies the area, not its root.
-    is_square = not factor and re.search(_SQUARE, text)
-    root = unit_of(re.sub(_SQUARE, "", text)) if is_square else None
+    # A power of ten before a square multiplies the area, and half of it the root.
+    is_square = re.search(_SQUARE, rest) and power % 2 == 0
+    root = unit_of(f"1e{power // 2} {re.sub(_SQUARE, '', rest)}") if is_square else None
     return ("area", *root[1:]) if root else None

@@ -66,9 +66,12 @@ def test_unit_that_contradicts_the_name_is_refused(heading: str, unit: str) -> N
         parse(f"{heading}\n1;2\n3;4\n".encode(), PROFILE)
 
 
-def test_power_of_ten_before_a_square_is_no_power_of_its_root() -> None:
-    with pytest.raises(InputError, match=r"Line 1: the unit 10\^-12 m\^2 is none of m², mm²"):
-        parse(b"A [10^-12 m^2];h [nm]\n1;2\n3;4\n", PROFILE)
+def test_power_of_ten_before_a_square_multiplies_the_area() -> None:
+    area = parse(b"A [10^-12 m^2];h [nm]\n1;2\n3;4\n", PROFILE)
+    assert area.values[0] == pytest.approx(np.sqrt(np.array([1.0, 3.0]) / np.pi), rel=1e-15, abs=0)
+    assert area.titles[0].unit == ("area", "µm", 1e-6)
+    with pytest.raises(InputError, match=r"Line 1: the unit 10\^-3 m\^2 is none of m², mm²"):
+        parse(b"A [10^-3 m^2];h [nm]\n1;2\n3;4\n", PROFILE)
 
 
 def test_column_a_is_a_radius_by_its_unit_alone() -> None:
