@@ -100,9 +100,10 @@ def test_limits_of_the_model_are_shown_in_one_line(visit: Visit) -> None:
     visit.open("?kind=paraboloid&radius=0.01&load=100&ul=mm&up=MPa")
     e_star, t = 2.1e11 / 0.91 / 2, 0.01
     a = (0.75 * 100 * 0.01 / e_star) ** (1 / 3)
-    # The retraction of JKR, (2 pi a w/E*)^(1/2), over the depth of the slope 2 a/R; F ~ a^3; and
+    # JKR: F = 4 E* b^3/(3 R) - (8 pi w E* b^3)^(1/2) at b = a (1 + t), F = 4 E* a^3/(3 R); and
     # 2 tau_max = 0.620 p_0 for a Poisson's ratio of 0.3 (Johnson, section 4.2).
-    work = e_star * (t * a * 2 * a / 0.01) ** 2 / (2 * math.pi * a)
+    b = a * (1 + t)
+    work = (100 * ((b / a) ** 3 - 1)) ** 2 / (8 * math.pi * e_star * b**3)
     strength = float(f"{0.620 * 1.5 * 100 / (math.pi * a**2) / 1e6:.2g}")
     line = visit.page.locator("#accuracy p").first.inner_text()
     expected = (
