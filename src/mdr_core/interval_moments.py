@@ -82,14 +82,16 @@ class IntervalMoments:
             return found
         # Beyond a break of a table g' may be many orders of magnitude larger than below, so that
         # the normal coordinate decides on which side of the break a rounded place lies.
-        index, breaks = self._at_breaks.searchsorted(normal), self.profile.coordinate_breaks
-        least, most = np.append(0.0, np.nextafter(breaks, inf)), np.append(breaks, inf)
+        at_breaks, least, most = self._pieces
+        index = at_breaks.searchsorted(normal)
         return np.clip(found, least[index], most[index])
 
     @cached_property
-    def _at_breaks(self) -> Array:
-        """Normal coordinates of the breaks."""
-        return self.normal(self.profile.coordinate_breaks)
+    def _pieces(self) -> tuple[Array, Array, Array]:
+        """Normal coordinates of the breaks, and the ends of the pieces between them."""
+        breaks = self.profile.coordinate_breaks
+        least = np.append(0.0, np.nextafter(breaks, inf))
+        return self.normal(breaks), least, np.append(breaks, inf)
 
     def over(self, low: Array, span: Array, ends: Array) -> Moments:
         """Return the moments over the intervals [low, low + span], shape (m,).

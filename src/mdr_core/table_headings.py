@@ -47,9 +47,9 @@ _FACTOR: Final = (
 )
 
 
-def _words(text: str) -> list[str]:
-    """Return the words of a text in lower case."""
-    return [word for word in re.split(r"[\W\d_]+", text.lower()) if word]
+def words_of(text: str) -> list[str]:
+    """Return the words of a text."""
+    return [word for word in re.split(r"[\W\d_]+", text) if word]
 
 
 class Title(NamedTuple):
@@ -65,7 +65,7 @@ class Title(NamedTuple):
     @property
     def words(self) -> list[str]:
         """Words of the name in lower case."""
-        return _words(self.name)
+        return words_of(self.name.lower())
 
     def has(self, parts: Sequence[str]) -> bool:
         """Return True if the name has one of the parts, its words written together."""
@@ -273,7 +273,7 @@ def segments_of(columns: Sequence[list[str]]) -> list[str] | None:
 
 def segment_of(text: str) -> str | None:
     """Return the kind of segment that a word of a text names, or None."""
-    words = _words(text)
+    words = words_of(text.lower())
     return next((kind for kind, known in _SEGMENTS.items() if not known.isdisjoint(words)), None)
 
 

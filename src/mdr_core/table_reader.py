@@ -25,6 +25,7 @@ from mdr_core.table_headings import (
     segments_of,
     titles_of,
     unit_of,
+    words_of,
 )
 from mdr_core.typing import Array
 from mdr_core.validation import require_type
@@ -399,7 +400,7 @@ def _is_area(title: Title) -> bool:
     """Return whether a column is an area, by its name or its unit; r² in mm² is not."""
     measured = title.unit is not None and title.unit[0] == "area"
     is_radius = title.name.lower().startswith(("r", "x"))
-    words = {*title.words, *re.split(r"[\W\d_]+", title.name)}
+    words = {*title.words, *words_of(title.name)}
     return not _AREAS.isdisjoint(words) or (measured and not is_radius)
 
 

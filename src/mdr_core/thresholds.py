@@ -1,7 +1,7 @@
 """Limits within which neglected effects change a result by no more than a tolerance.
 
-Each follows from the contact radius a and F_N(a), those of slip and thickness to first order in the
-tolerance t:
+Each limit follows from the contact radius a and F_N(a). Slip and thickness are of first order in
+the tolerance t:
 
 * adhesion: w = E* l^2/(2 pi a'), 2 E* a' l = F_N(a') - F_N(a), changes the contact radius under a
   given force to a' = a (1 + t), at most the end of the profile; a flat punch has the same depth
@@ -86,8 +86,8 @@ def of_contact(contact: NormalContact, tolerance: float) -> tuple[Threshold, ...
         )
         raise InputError(("holds_within",), detail)
     profile, e_star, a = contact.profile, contact.e_star, contact.contact_radius
-    flat, force, wide, within = profile.is_flat_punch, contact.normal_force, a, np.zeros_like(a)
-    retraction = tolerance * contact.indentation_depth
+    flat, force = profile.is_flat_punch, contact.normal_force
+    wide, within, retraction = a, np.zeros_like(a), tolerance * contact.indentation_depth
     with np.errstate(all="ignore"):
         if not flat:
             wide = np.minimum(a * (1 + tolerance), profile.domain)

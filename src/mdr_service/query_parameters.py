@@ -203,8 +203,8 @@ def _described(model: type[contacts.Query]) -> Iterator[tuple[str, str, Any, str
     # Cycles are the only load paths that consist of numbers.
     loads = _CYCLES if model is HistoryQuery else _LOADS
     groups = {"", "profile", "material", *_LAYERS, *_OF_BODIES, *loads}
-    # Members of groups come before the members that all queries share. Of two with one name the
-    # last is meant: a fit has a layer of its own beside that of a material.
+    # Members of groups come before the members that all queries share. The last of one name counts,
+    # so that the options of a layer describe the layer of a fit, not the layer of its material.
     for field, leaf in sorted(
         leaves(model.model_json_schema()),
         key=lambda each: "." not in each[0] or each[0].startswith("layer."),

@@ -20,15 +20,11 @@ def read(content: bytes, kind: str, columns: list[int] | None) -> bytes:
     table = parse(content, KINDS[kind], columns)
     quantities = {i: quantity for quantity, columns in table.taken.items() for i in columns}
     units = [each.unit or ("", None, None) for each in table.titles]
-    squares = ["²" if measure == "area" else "" for measure, *_ in units]
+    written = [f"{unit}²" if measure == "area" else unit for measure, unit, _ in units]
     result: dict[str, Any] = {
         "columns": [
-            {
-                "name": each.name,
-                "unit": unit and f"{unit}{squares[i]}",
-                "quantity": quantities.get(i),
-            }
-            for i, (each, (_, unit, _)) in enumerate(zip(table.titles, units, strict=True))
+            {"name": each.name, "unit": written[i], "quantity": quantities.get(i)}
+            for i, each in enumerate(table.titles)
         ],
         **dict(zip(_LISTS[kind], table.values, strict=True)),
         "units": [units[i][1] for i, *_ in table.taken.values()],

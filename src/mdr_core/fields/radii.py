@@ -121,9 +121,11 @@ def edge_error(contact: Contact | ContactState, name: str, radius: ArrayLike) ->
     if name == "slip":
         # Slip grows as (r - c)^(3/2) from a front, and is small at radii next to c. Far from c it
         # is of the size of g(r), and changes with c by g'(c) dc.
-        count, reach = known.radius.size, known.reach.copy()
-        fronts = slice(-1) if isinstance(contact, ContactState) else slice(count // 2, count)
-        profile = (contact if isinstance(contact, ContactState) else contact.normal).profile
+        reach = known.reach.copy()
+        if isinstance(contact, ContactState):
+            fronts, profile = slice(-1), contact.profile
+        else:
+            fronts, profile = slice(reach.size // 2, reach.size), contact.normal.profile
         c, last = known.radius[fronts], radius[radius <= known.radius.max()].max(initial=0.0)
         with np.errstate(all="ignore"):
             rise = (profile.g(last) - profile.g(c)) / profile.dg(c)
