@@ -78,9 +78,11 @@ def invert(function: Sloped, target: Array, start: Array, low: Array, high: Arra
             low = where(value < goal, s, low)
             high = where(value > goal, s, high)
             last = short | ~((s > 1 / LARGEST) & (s < LARGEST))
-            usable = (
-                (proposed > low) & (proposed < high) & (count < _ALONE or count % 2 == 1)
-            ) | last
+            # Where the function hardly rises, a step leaves the range of doubles.
+            inside = (proposed > np.maximum(low, 1 / LARGEST)) & (
+                proposed < np.minimum(high, LARGEST)
+            )
+            usable = (inside & (count < _ALONE or count % 2 == 1)) | last
             moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))
             moved = where(moved < LARGEST, where(moved > 1 / LARGEST, moved, 0.0), inf)
             # If the function has no value here, neither bound moves, and the next middle is here.
