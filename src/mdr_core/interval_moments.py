@@ -18,7 +18,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from mdr_core.doubles import EPS, TINY
-from mdr_core.elementwise import in_blocks, in_order, some, where
+from mdr_core.elementwise import in_blocks, in_order, quotient, some, where
 from mdr_core.equivalent_1d import break_below, depth_step, force_step, has_many_breaks
 from mdr_core.inversion import Function
 from mdr_core.profiles import Profile
@@ -69,10 +69,15 @@ class IntervalMoments:
         """Normal coordinate of a contact coordinate."""
         return self.profile.reduced_force if self.over_forces else self.profile.depth
 
-    @property
-    def conjugate(self) -> Function:
-        """Conjugate of a contact coordinate."""
-        return self.profile.depth if self.over_forces else self.profile.reduced_force
+    def conjugate(self, normal: Array, coordinate: Array) -> Array:
+        """Conjugate of a normal coordinate, given with its contact coordinate."""
+        profile = self.profile
+        found = (profile.depth if self.over_forces else profile.reduced_force)(coordinate)
+        if not profile.coordinate_breaks.size:
+            return found
+        # Just beyond a break the normal coordinates of neighbouring doubles are far apart.
+        rest, twice = normal - self.normal(coordinate), 2 * profile.contact_radius(coordinate)
+        return found + (quotient(rest, twice) if self.over_forces else rest * twice)
 
     def contact_coordinate(self, normal: Array) -> Array:
         """Contact coordinate of a normal coordinate; rounding may put it just beyond the domain."""

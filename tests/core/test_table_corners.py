@@ -167,6 +167,29 @@ def test_history_next_to_the_edge_of_a_flat() -> None:
     assert found == pytest.approx(expected, rel=1e-6, abs=1e-12 * expected.max())
 
 
+@pytest.mark.parametrize(
+    "controls",
+    [
+        ("normal_force", "tangential_displacement"),
+        ("indentation_depth", "tangential_force"),
+        ("indentation_depth", "tangential_displacement"),
+    ],
+)
+def test_small_steps_of_a_history_next_to_the_edge_of_a_flat(controls: tuple[str, str]) -> None:
+    """The load, not the rounded radius, places the contact 1e-4 beyond the edge."""
+    r, cone = np.linspace(0.0, 1.0, 21), TruncatedCone(0.5, 0.1)
+    table = Tabulated(r, np.maximum(r - 0.5, 0.0) / 10, breaks=[0.5], uncertainty=0.0)
+    scale = float(getattr(solve(cone, 1.0, contact_radius=0.50005), controls[0]))
+    path = {
+        controls[0]: scale * np.array([1.0, 1 - 1e-6, 1 - 1e-3, 1.0]),
+        controls[1]: 0.3 * scale * np.array([0.0, 1e-7, 1e-6, 0.01]),
+    }
+    found, expected = (history.solve(each, 1.0, 1.0, 0.3, **path) for each in (table, cone))
+    for name in ("tangential_force", "tangential_displacement", "dissipated_energy"):
+        ours, right = getattr(found, name), getattr(expected, name)
+        assert ours == pytest.approx(right, rel=0, abs=1e-11 * np.abs(right).max())
+
+
 @pytest.mark.parametrize("count", [40, 200])
 def test_work_of_friction_over_a_nearly_flat_part(count: int) -> None:
     """W = (2 mu^2 E*^2/G*) int_0^a (d - g) g dx by Gauss's rule on each piece of the slope."""
@@ -258,3 +281,12 @@ def test_pressure_is_infinite_from_a_declared_corner_on(place: float) -> None:
     for radius in (place * (1 + 1e-3), [place * (1 - 1e-3), place * (1 + 1e-3)]):
         largest = solve(table, 1e9, contact_radius=radius).maximum_pressure
         assert np.isinf(largest).tolist() == np.greater(radius, place).tolist()
+
+
+def test_step_from_a_nearly_flat_part_stays_in_the_table() -> None:
+    """Where g hardly rises, a step of Newton's method exceeds the range of doubles."""
+    r = [0.0, 0.0054013732, 0.009343405, 0.010802746, 0.01620412]
+    f = [1.0889754e-08, 9.9424136e-08, 2.4869352e-07, 1.2475936e-06, 6.0230374e-06]
+    table, depth = Tabulated(r, f, uncertainty=4.8372163167661616e-08), 2.1738860903574165e-08
+    contact = solve(table, 1.0, indentation_depth=depth)
+    assert table.g(contact.contact_radius) == pytest.approx(depth, rel=1e-12, abs=0)

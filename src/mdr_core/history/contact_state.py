@@ -182,7 +182,7 @@ class ContactState(LoadPointResults):
         # A rounding error may place a corner deeper than the load point.
         depth = min(depth, profile.largest_loads[0])
         coordinate = profile.coordinate_from_depth(depth)
-        force = profile.reduced_force(coordinate)
+        force = self._moments.conjugate(depth, coordinate)
         grown = force - below.force
         if span < SHORT * depth:
             grown = span * self._moments.mean_slope(below.coordinate, coordinate)

@@ -190,7 +190,8 @@ class SampledPath:
         load, index = np.unique(np.maximum(loads, 0.0), return_inverse=True)
         of_force = not self.depth_prescribed
         s = self.start.profile.coordinate_from_load(load, of_force=of_force)
-        return np.where(loads > 0, self.moments.normal(s)[index], np.minimum(loads, 0.0))
+        given = interval_moments(self.start.profile, over_forces=of_force)
+        return np.where(loads > 0, given.conjugate(load, s)[index], np.minimum(loads, 0.0))
 
     @cached_property
     def coordinates(self) -> Array:

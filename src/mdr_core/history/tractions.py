@@ -43,7 +43,7 @@ class TractionVertices:
     @cached_property
     def conjugate(self) -> Array:
         """Reduced force of each vertex, or its depth where forces are prescribed."""
-        return self.moments.conjugate(self.coordinate)
+        return self.moments.conjugate(self.tree.normal, self.coordinate)
 
     @cached_property
     def conjugate_step(self) -> Array:
