@@ -18,11 +18,19 @@ from tests.core.comparison import profile_from
 from tests.oracles.reference import energy
 from tests.oracles.shapes import shape_of
 
-PAIRS = [(1.0, 1.0), (3.0, 1.0), (1.0, 1e9), (1.0, -1.0001), (1.0, -1 - 1e-8), (-1.3, 1.0)]
+PAIRS = [
+    (1.0, 1.0),
+    (1.0, 1.00002),
+    (3.0, 1.0),
+    (1.0, 1e9),
+    (1.0, -1.0001),
+    (1.0, -1 - 1e-8),
+    (-1.3, 1.0),
+]
 
 
 @pytest.mark.parametrize("radii", PAIRS)
-@pytest.mark.parametrize("a", [1e-9, 1e-4, 0.1, 0.44, 0.8, 0.849, 0.99])
+@pytest.mark.parametrize("a", [1e-9, 1e-4, 0.1, 0.44, 0.8, 0.849, 0.99, 1 - 1e-7])
 @pytest.mark.parametrize("unit", [1e-40, 1.0, 1e40])
 def test_quantities_of_the_exact_gap(radii: tuple[float, float], a: float, unit: float) -> None:
     if min(radii) < 0 and a > 0.85:
