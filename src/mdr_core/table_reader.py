@@ -50,8 +50,8 @@ _REPLACED: Final = (
     (r"[^\S\n][#!].*", ""),
     (" {2,}", " "),
 )
-# Any number, with whatever decimal sign, or parts of two: 1.234,5;0,5 has no column 5;0.
-_NUMBERLIKE: Final = re.compile(r"(?ai)[-+]?[\d.,;]*\d[.,]?([ed][-+]?\d+)?")
+# Any number but a date, with whatever decimal sign, or parts of two: 1.234,5;0,5 has no column 5;0.
+_NUMBERLIKE: Final = re.compile(r"(?ai)(?!\d+\.\d\d?\.\d)[-+]?[\d.,;]*\d[.,]?([ed][-+]?\d+)?")
 _DECIMAL: Final = str.maketrans(",dD", ".ee")
 # Quoted number with commas between thousands: in its column "3,000" is 3000, not 3.
 _THOUSANDS: Final = re.compile(r'" *[-+]?\d{1,3}(,\d{3})*,\d{3}(\.\d*|,\d{3}) *"')
@@ -248,7 +248,15 @@ def parse(content: bytes, kind: Sequence[str], columns: Sequence[int] | None = N
         if error:
             errors.append((len(rows), error))
         elif rows:
-            titles = titles_of(heading, separator, max(len(row.cells) for row in rows), kind)
+            count = max(len(row.cells) for row in rows)
+            titles = titles_of(heading, separator, count, kind)
+            # A comment that gives columns other names or units begins another table.
+            within = [(i, text) for i, comment, text in lines if comment and i > rows[0].line]
+            again = titles_of([*within, (0, "")], separator, count, kind)
+            for old, new in zip(titles, again, strict=True):
+                is_same = new.name in {"", old.name} and new.unit == old.unit
+                if new.line and new.unit and not is_same:
+                    raise refuse(new.line, "the columns change: put each table in its own file")
             return _table(rows, titles, separator, kind, columns)
     # The dialect in which most lines are numbers is probably the intended one.
     raise max(errors[1:] or errors, key=lambda each: each[0])[1]
@@ -289,6 +297,12 @@ def _numbers(cells: Sequence[str], form: re.Pattern[str]) -> list[int]:
     return found if len(found) > 1 else []
 
 
+def _are_numberlike(cells: Sequence[str], columns: Sequence[int]) -> bool:
+    """Return True if the columns, or all cells, are numbers: a row with another decimal sign."""
+    places = columns or range(len(cells))
+    return all(i < len(cells) and _NUMBERLIKE.fullmatch(cells[i]) for i in places)
+
+
 def _rows(
     lines: Sequence[tuple[int, bool, str]],
     separator: str,
@@ -313,9 +327,13 @@ def _rows(
         if found and found == (columns or found):
             columns = found
             rows.append(_Row(number, cells, segment))
-        elif rows or form.fullmatch(cells[0]):
+        elif rows or form.fullmatch(cells[0]) or _are_numberlike(cells, columns):
+            if found and not rows:
+                # The last line is no row of the table: find the line where the table ends.
+                return _rows(lines, separator, form, [])
             count = len(columns) or max(len(cells), 2)
-            return rows, heading, refuse(number, f"{count} numbers are expected")
+            detail = "numbers are expected: correct the line, put # before it, or start a new file"
+            return rows, heading, refuse(number, f"{count} {detail}")
         else:
             heading.append((number, text))
     return rows, heading, None

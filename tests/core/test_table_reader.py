@@ -208,7 +208,8 @@ def test_headings_with_prefixes_and_powers_are_read_whole(
         ("Time,Extension,Load\n(s),(mm),(N)", '"0","0.1","5"\n"1","0.2","6"', "mm N"),
         ("Prüfzeit;Standardweg;Standardkraft\ns;mm;N", "0;0,1;5\n1;0,2;6", "mm N"),
         ("Time,Force,Stroke\nsec,N,mm", "0.0,5,0.1\n1.0,6,0.2", "mm N"),
-        ("Force (g),Distance (mm)", "5,0.1\n6,0.2", "refused"),
+        ("Force\tDistance\tTime\ng\tmm\tsec", "5\t0.1\t0\n6\t0.2\t1", "mm g"),
+        ("Depth (mu m);Load (muN)", "0.1;5\n0.2;6", "µm µN"),
         (";Kraft;Weg\n;N;mm", "a;5;0,1\nb;6;0,2", "mm N"),
         ("Depth [cm],Force [lbf]", "0.1,5\n0.2,6", "cm lbf"),
         ("Depth (corrected) [nm];Load [mN] (raw)", "0.1;5\n0.2;6", "nm mN"),
@@ -219,12 +220,9 @@ def test_curves_as_instruments_export_them(
 ) -> None:
     file = tmp_path / "curve.txt"
     file.write_text(f"{heading}\n{rows}\n", "utf-8")
-    if unit == "refused":
-        with pytest.raises(InputError, match="Line 1: the unit g is none of N, mN, µN, nN"):
-            read_curve(file)
-        return
     sizes = {"m": 1, "mm": 1e-3, "cm": 1e-2, "µm": 1e-6, "nm": 1e-9}
     sizes |= {"N": 1, "mN": 1e-3, "µN": 1e-6, "nN": 1e-9, "lbf": 4.4482216152605}
+    sizes |= {"g": 9.80665e-3}
     depth, force = (sizes[each] for each in (unit or "m N").split())
     curve = read_curve(file, (None, None) if unit else ("m", "N"))
     expected = pytest.approx([0.1 * depth, 0.2 * depth], rel=1e-12, abs=0)
@@ -246,6 +244,10 @@ def test_curves_as_instruments_export_them(
         ('Depth [nm],Force [N]\n500,0\n"1,000",1', "Line 3: a comma may stand before thousands"),
         ('Depth [nm],Force [N]\n1,0\n"1,000,000",1', "Line 3: a comma may stand before thousands"),
         ("d [m];F [N]\n0,0;0,0\n1.234,5;0,5", "Line 3: 2 numbers are expected"),
+        ("d [nm];F [mN]\n1;2\n2;4\nMean;3", "Line 4: 2 numbers are expected: correct the line"),
+        ("t;d [nm];F [mN]\n0;1;2\n1;2;4\nMax;2;4", "Line 4: 3 numbers are expected"),
+        ("# d [nm] F [mN]\n1 2\n# d [µm] F [mN]\n1 2", "Line 3: the columns change"),
+        ("# d [nm] F [mN]\n1 2\n# F [mN] d [nm]\n2 1", "Line 3: the columns change"),
         ("PK\x03\x04", "is a workbook"),
     ],
 )
@@ -254,6 +256,14 @@ def test_what_is_not_understood_is_refused(tmp_path: Path, text: str, detail: st
     file.write_text(text, "utf-8")
     with pytest.raises(InputError, match=detail):
         read_curve(file, ("m", "N"))
+
+
+@pytest.mark.parametrize(
+    "rows", ["0,5;1,5\n1;2", "1,2E-1;2\n0,5;1,5E1\n3E-9;7E-3", "01.05.2024;0,5;2\n02.05.2024;1;2"]
+)
+def test_rows_before_a_row_without_decimals_are_read(rows: str) -> None:
+    heading = "Date;d [nm];F [mN]" if "." in rows else "d [nm];F [mN]"
+    assert parse(f"{heading}\n{rows}".encode(), CURVE).lines == list(range(2, rows.count("\n") + 3))
 
 
 @pytest.mark.parametrize("blank", ["\x0b\x0c", "\x1c", "\u2009"])
