@@ -306,7 +306,8 @@ class _Loop(CurveModel):
         squares, limits, offsets = linear(shapes, self.force[some])
         best = int(np.where(limits > 0, squares, inf).argmin())
         if not limits[best] > 0:
-            raise InputError(("tangential_force",), "must rise with the displacement")
+            detail = "must rise with the displacement: reverse the sign of one of them"
+            raise InputError(("tangential_force",), detail)
         (in_rig, ratio), limit = tried[best], float(limits[best])
         friction = limit / float(pressed.normal_force)
         whole = (1 - in_rig) * self.amplitude / ratio

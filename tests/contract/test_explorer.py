@@ -347,11 +347,12 @@ def test_curve_from_an_instrument_is_fitted(visit: Visit, tmp_path: Path) -> Non
     assert modulus[-1] == "MPa"
     assert visit.number("Contact point").startswith("3")
     # As a separation it is refused, until its sign is reversed.
-    visit.page.click("#curve-fields .reverse")
-    assert visit.state() == "refused"
-    assert visit.page.locator("#problem-curve").inner_text().endswith("of a separation or height")
-    visit.page.click("#curve-fields .reverse")
-    assert visit.state() == "current"
+    for column, problem in (("r", "of a separation or height"), ("f", "reverse its sign")):
+        visit.page.click(f"#curve-fields [data-list={column}]")
+        assert visit.state() == "refused"
+        assert visit.page.locator("#problem-curve").inner_text().endswith(problem)
+        visit.page.click(f"#curve-fields [data-list={column}]")
+        assert visit.state() == "current"
     visit.page.fill("#curve", "d [nm], F [mm]\n0, 0\n1, 2\n2, 3")
     problem = visit.page.locator("#problem-curve")
     problem.get_by_text("name the depth d and the force F in a line above").wait_for()

@@ -131,13 +131,16 @@ export function tableField(root, kind, { change, fail }) {
     });
   });
   text.addEventListener("input", () => read());
-  part(".reverse").addEventListener("click", () => {
-    if (!shown) return;
-    const opposite = { loading: "unloading", unloading: "loading" };
-    const segments = shown.segments?.map((each) => ({ ...each, kind: opposite[each.kind] ?? each.kind }));
-    const drift = shown.drift && [-shown.drift[0], shown.drift[1]];
-    rewrite({ ...shown, segments, drift, [kind.reversed]: shown[kind.reversed].map((x) => 0 - x) });
-  });
+  for (const button of root.querySelectorAll(".reverse")) {
+    button.addEventListener("click", () => {
+      if (!shown) return;
+      const { list } = button.dataset;
+      const opposite = list === "r" ? { loading: "unloading", unloading: "loading" } : {};
+      const segments = shown.segments?.map((each) => ({ ...each, kind: opposite[each.kind] ?? each.kind }));
+      const drift = shown.drift && [list === "r" ? -shown.drift[0] : shown.drift[0], shown.drift[1]];
+      rewrite({ ...shown, segments, drift, [list]: shown[list].map((x) => 0 - x) });
+    });
+  }
   part(".centre")?.addEventListener("click", async () => {
     if (!shown) return;
     const { axis } = await readTable(textOf(shown), kind);

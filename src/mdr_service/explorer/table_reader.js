@@ -6,9 +6,9 @@ export const LENGTHS = { m: 1, mm: 1e-3, "µm": 1e-6, nm: 1e-9 };
 export const FORCES = { N: 1, mN: 1e-3, "µN": 1e-6, nN: 1e-9 };
 
 // `most`: the points of the longest list that the service takes by default.
-export const PROFILE = { as: "profile", heads: ["r", "f"], quantities: [["radius", "area"], ["height"]], lists: ["r", "f"], units: [LENGTHS, LENGTHS], reversed: "f", most: 2000 };
+export const PROFILE = { as: "profile", heads: ["r", "f"], quantities: [["radius", "area"], ["height"]], lists: ["r", "f"], units: [LENGTHS, LENGTHS], most: 2000 };
 export const CURVE = {
-  as: "curve", heads: ["d", "F"], quantities: [["depth"], ["force"]], lists: ["indentation_depth", "normal_force"], units: [LENGTHS, FORCES], reversed: "r", most: 100000,
+  as: "curve", heads: ["d", "F"], quantities: [["depth"], ["force"]], lists: ["indentation_depth", "normal_force"], units: [LENGTHS, FORCES], most: 100000,
 };
 
 /**
