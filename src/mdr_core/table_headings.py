@@ -38,8 +38,10 @@ _MULTIPLIER: Final = (
 _LABEL: Final = r"(?i)^(fancyNames|columns|headings?|units?)\s*[:=]\s*"
 # Characters of the longest heading: tables of instruments have a few hundred.
 _LONGEST: Final = 4_000
-# Argument of a function after its name: A(h), A(hc), f(r).
-_ARGUMENT: Final = r"(?<=\w) ?\((h|h_?c|r)\)"
+# Argument of a function after its name: A(h), A(hc), f(r), z(x), F(d).
+_ARGUMENT: Final = r"(?<=\w) ?\((h|h_?c|r)\)|(?<=\b\w)\([dx]\)"
+# Names of last columns that may be empty in every row.
+_REMARKS: Final = frozenset(_WORDS["remarks"])
 _SQUARE: Final = r"(²|\^2|\*\*2|2)$"
 # A number before a unit, such as 10^-6, 1e-6 or x10-6.
 _FACTOR: Final = (
@@ -130,9 +132,8 @@ def titles_of(
             joined = re.sub(r" (?=[\[({])", "~", joined)
         joined = re.sub(r"[\[({][^\[\](){}]*[\])}]", lambda b: re.sub("[ ,]", "~", b[0]), joined)
         cells = cells_of(re.sub(r" ?/ ?|(?<=\w) in (?=\w)", "/", joined), separator)
-        cells = [
-            cell.replace("~", " ") for cell in cells[: count if not any(cells[count:]) else None]
-        ]
+        end = count if _REMARKS.issuperset(each.lower() for each in cells[count:]) else None
+        cells = [cell.replace("~", " ") for cell in cells[:end]]
         units = [unit_of(re.sub(r"[\[\](){}]", "", cell)) for cell in cells]
         if all(units):
             # The last columns may have no unit.

@@ -40,13 +40,14 @@ _DIALECTS: Final = (
     *((separator, form) for separator in "\t;" for form in (_POINT, _COMMA)),
     *((" ", _COMMA), (",", _POINT), (" ", _POINT)),
 )
-# Variants of a sign, marks of comments, comments after numbers, and repeated blanks.
+# Variants of a sign, marks of comments, comments after numbers, and repeated blanks. In `%;N` the
+# percent sign is a unit.
 _REPLACED: Final = (
     ("\r\n?", "\n"),
     ("−", "-"),
     ("μ", "µ"),
     (r"[^\S\n\t]", " "),
-    (r"(?m)^[^\S\n]*(#|%|!|//)+", "#"),
+    (r"(?m)^[^\S\n]*(#|%(?!;)|!|//)+", "#"),
     (r"[^\S\n][#!].*", ""),
     (" {2,}", " "),
 )

@@ -98,8 +98,9 @@ def test_quoted_number_with_three_decimals_is_one_beside_another_decimal_comma()
 
 
 def test_argument_of_a_function_is_no_unit() -> None:
-    table = parse(b"r [mm];f(r) [mm]\n0;0\n1;2\n2;8\n", PROFILE)
-    assert np.array_equal(table.values, [[0.0, 1.0, 2.0], [0.0, 2.0, 8.0]])
+    for heading in (b"r [mm];f(r) [mm]", b"x [mm];z(x) [mm]"):
+        table = parse(heading + b"\n0;0\n1;2\n2;8\n", PROFILE)
+        assert np.array_equal(table.values, [[0.0, 1.0, 2.0], [0.0, 2.0, 8.0]])
 
 
 @pytest.mark.parametrize(
@@ -209,6 +210,7 @@ def test_headings_with_prefixes_and_powers_are_read_whole(
         ("Prüfzeit;Standardweg;Standardkraft\ns;mm;N", "0;0,1;5\n1;0,2;6", "mm N"),
         ("Time,Force,Stroke\nsec,N,mm", "0.0,5,0.1\n1.0,6,0.2", "mm N"),
         ("Force\tDistance\tTime\ng\tmm\tsec", "5\t0.1\t0\n6\t0.2\t1", "mm g"),
+        ("X_Value\tDisplacement (um)\tForce (N)\tComment", "0\t0.1\t5\t\n1\t0.2\t6", "µm N"),
         ("Depth (mu m);Load (muN)", "0.1;5\n0.2;6", "µm µN"),
         (";Kraft;Weg\n;N;mm", "a;5;0,1\nb;6;0,2", "mm N"),
         ("Depth [cm],Force [lbf]", "0.1,5\n0.2,6", "cm lbf"),
@@ -248,6 +250,7 @@ def test_curves_as_instruments_export_them(
         ("t;d [nm];F [mN]\n0;1;2\n1;2;4\nMax;2;4", "Line 4: 3 numbers are expected"),
         ("# d [nm] F [mN]\n1 2\n# d [µm] F [mN]\n1 2", "Line 3: the columns change"),
         ("# d [nm] F [mN]\n1 2\n# F [mN] d [nm]\n2 1", "Line 3: the columns change"),
+        ("Strain;Load\n%;N\n0,1;2\n0,2;3", "2 columns; name the depth d"),
         ("PK\x03\x04", "is a workbook"),
     ],
 )
