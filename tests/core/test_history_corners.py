@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from mdr_core import fields, history, normal
-from mdr_core.profiles import FlatPunch, Paraboloid, Profile, RoundedPunch, Tabulated
+from mdr_core import fields, history, normal, tangential
+from mdr_core.profiles import Cone, FlatPunch, Paraboloid, Power, Profile, RoundedPunch, Tabulated
 from tests.core.comparison import EPS, INPUT, profile_from
 from tests.core.test_history_paths import DEPTH, FULL_SLIP, MATERIAL, PROFILES, solve
 from tests.oracles import slip_reference as slip
@@ -474,3 +474,39 @@ def test_path_under_controls_of_different_pairs_may_end_in_separation(control: s
     assert found.slip_fronts.size == 0
     assert not found.state.in_contact
     assert fields.shear_stress(found.state, [0.0, 0.5]).tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("profile", [Power(1.0, 0.1), Power(1.0, 0.3), Cone(0.1), Paraboloid(1.0)])
+@pytest.mark.parametrize("share", np.linspace(0.1, 0.9, 9).tolist())
+def test_work_up_to_the_friction_limit_after_a_reversal(profile: Profile, share: float) -> None:
+    """By Masing's rule the way from -Q to the limit dissipates 2 D(Q) more than the first one."""
+    force, mu = 0.5692807687098409, 0.21740850467603928
+    path = {"normal_force": force, "tangential_force": mu * force * np.array([0, -share, 1])}
+    found = history.solve(profile, 1.0, 1.0, mu, **path)
+    contact = normal.solve(profile, 1.0, normal_force=force)
+    first, limit = (
+        float(tangential.solve(contact, 1.0, mu, tangential_force=part).dissipated_energy)
+        for part in (mu * force * share, mu * force)
+    )
+    assert found.dissipated_energy[-1] == near(limit + 2 * first)
+
+
+@pytest.mark.parametrize("less", [1e-6, 1e-7, 1e-8, 1e-9])
+def test_error_estimate_where_loads_fall_nearly_in_the_ratio_of_friction(less: float) -> None:
+    """In other units the loads are rounded, and little is left of their small difference."""
+    pressed = np.array([7.0, 4.0, 9.0, 3.0])
+    pushed = 0.3 * pressed * (1 - less * np.array([0, 1, 0.3, 0.6]))
+    moduli = np.array([1e3, 800.0])
+    one, other = (
+        history.solve(
+            Paraboloid(1.9),
+            *(unit * moduli).tolist(),
+            0.3,
+            normal_force=unit * pressed,
+            tangential_force=unit * pushed,
+        )
+        for unit in (1.0, 1e-3)
+    )
+    expected, room = one.dissipated_energy, one.error_estimate + other.error_estimate
+    room *= float(expected.max())
+    assert other.dissipated_energy / 1e-3 == near(expected, rel=0, absolute=room)

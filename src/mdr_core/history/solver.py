@@ -226,7 +226,8 @@ class LoadHistory(validity.ResultsOverLoads):
         normal, tangential = np.maximum(self.path.coordinates[0], 0.0), self.path.coordinates[1]
         least, most = sorted([float(normal.max()), float(np.abs(tangential).max())])
         deeper, further = np.diff(normal), np.abs(np.diff(tangential))
-        travel = float(np.max(np.where(normal[1:] > 0, further - deeper, 0.0)))
+        slid = np.where(deeper > 0, further - deeper, np.abs(further + deeper))
+        travel = float(np.max(np.where(normal[1:] > 0, slid, 0.0)))
         total, error = float(self.dissipated_energy[-1]), 0.0
         if least > 0:
             error = most / least
