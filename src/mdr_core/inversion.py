@@ -79,9 +79,8 @@ def invert(function: Sloped, target: Array, start: Array, low: Array, high: Arra
             high = where(value > goal, s, high)
             last = short | ~((s > 1 / LARGEST) & (s < LARGEST))
             # Where the function hardly rises, a step leaves the range of doubles.
-            inside = (proposed > np.maximum(low, 1 / LARGEST)) & (
-                proposed < np.minimum(high, LARGEST)
-            )
+            inside = (proposed > low) & (proposed < high)
+            inside &= (proposed > 1 / LARGEST) & (proposed < LARGEST)
             usable = (inside & (count < _ALONE or count % 2 == 1)) | last
             moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))
             moved = where(moved < LARGEST, where(moved > 1 / LARGEST, moved, 0.0), inf)
