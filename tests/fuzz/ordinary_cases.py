@@ -349,6 +349,7 @@ def evolution(random: Random, kind: str | None = None) -> dict[str, Any]:
 def torsion(random: Random, kind: str | None = None) -> dict[str, Any]:
     """Return a query of a twist."""
     scene = contact(random, kind)
+    scene.query["material"].pop("yield_strength", None)
     mu, a = scene.friction, scene.case.radius
     typical = {
         "torque": 0.4 * mu * scene.force * a,

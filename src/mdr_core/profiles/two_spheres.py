@@ -120,10 +120,7 @@ class TwoSpheres(Spheroid):
         return 0.5 * np.log1p(2 * x * ((small + large) / ((small - x) * (large - x))))
 
     def reduced_force(self, coordinate: Array) -> Array:
-        """2 a g(a) - 2 int_0^a g dx: closed forms suffer cancellation, and g' has double poles.
-
-        See `Profile`.
-        """
+        """2 int_0^a x g'(x) dx by parts: closed forms cancel, and g' has double poles."""
         return 2 * (coordinate * self.g(coordinate) - self._integral(self.g, coordinate))
 
     def pressure_kernel(self, annulus: Annulus, radius: Array) -> Array:
