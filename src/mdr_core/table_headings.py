@@ -36,8 +36,9 @@ _MULTIPLIER: Final = (
 )
 # Words before the names, or the units, of columns in a comment.
 _LABEL: Final = r"(?i)^(fancyNames|columns|headings?|units?)\s*[:=]\s*"
-# Characters of the longest heading: tables of instruments have a few hundred.
-_LONGEST: Final = 4_000
+# Characters of the longest heading, and most lines of text that are searched for headings: tables
+# of instruments have a few hundred.
+_LONGEST, _MOST = 4_000, 10_000
 # Argument of a function after its name: A(h), A(hc), f(r), z(x), F(d).
 _ARGUMENT: Final = r"(?<=\w) ?\((h|h_?c|r)\)|(?<=\b\w)\([dx]\)"
 # Names of last columns that may be empty in every row.
@@ -121,7 +122,7 @@ def titles_of(
     kind : names of the two quantities that are read, such as `PROFILE`.
     """
     titles, common = [Title()] * count, None
-    for number, text in heading:
+    for number, text in heading[-_MOST:]:
         if len(text) > _LONGEST:
             continue
         if found := re.search(r"(?i)\bunits?\b\W*(\S+)\W*$", text):
@@ -218,14 +219,18 @@ def places_of(
         return [[i] for i in numeric]
     names = {i + 1: titles[i].name for i in numeric}
     places = [best_of(titles, numeric, quantity) for quantity in kind]
-    if kind == CURVE and not places[0]:
-        for i in numeric:
-            if [i] not in places and titles[i].has(_DEFLECTED):
-                detail = (
-                    f"column {i + 1} is a position or a deflection of a cantilever, no depth: take "
-                    "the tip-sample separation, or name the column of depths d"
-                )
-                raise ColumnsError(line, detail, names)
+    # Beside a deflection a position is the cantilever's.
+    deflects = kind == CURVE and any(titles[i].has(_DEFLECTED) for i in places[1])
+    for i in numeric:
+        taken = deflects and [i] == places[0] and not titles[i].falls
+        moves = taken and "position" in titles[i].words
+        lacks = kind == CURVE and not places[0] and [i] not in places
+        if moves or (lacks and titles[i].has(_DEFLECTED)):
+            detail = (
+                f"column {i + 1} is a position or a deflection of a cantilever, no depth: take "
+                "the tip-sample separation, or name the column of depths d"
+            )
+            raise ColumnsError(line, detail, names)
     if kind == CURVE and all(_are_branches([titles[i] for i in best]) for best in places):
         return [sorted(best, key=lambda i: str(segment_of(titles[i].name))) for best in places]
     for quantity, best in zip(kind, places, strict=True):

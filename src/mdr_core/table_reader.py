@@ -252,8 +252,9 @@ def parse(content: bytes, kind: Sequence[str], columns: Sequence[int] | None = N
             count = max(len(row.cells) for row in rows)
             titles = titles_of(heading, separator, count, kind)
             # A comment that gives columns other names or units begins another table.
-            within = [(i, text) for i, comment, text in lines if comment and i > rows[0].line]
-            again = titles_of([*within, (0, "")], separator, count, kind)
+            within = {text: i for i, comment, text in lines if comment and i > rows[0].line}
+            comments = [(i, text) for text, i in within.items()]
+            again = titles_of([*comments, (0, "")], separator, count, kind)
             for old, new in zip(titles, again, strict=True):
                 is_same = new.name in {"", old.name} and new.unit == old.unit
                 if new.line and new.unit and not is_same:

@@ -463,6 +463,18 @@ def test_file_of_four_megabytes_takes_linear_time() -> None:
     assert seconds(150_000) < 30 * min(seconds(15_000) for _ in range(3))
 
 
+def test_many_lines_of_text_take_little_more_time_than_the_most_that_are_searched() -> None:
+    def seconds(count: int) -> float:
+        text = "".join(f"# event {i}; d\n" for i in range(count))
+        begin = process_time()
+        found = parse(f"{text}d [m];F [N]\n1;2\n{text}2;3\n".encode(), CURVE)
+        assert found.values[1].tolist() == [2, 3]
+        return process_time() - begin
+
+    # Without a limit the ratio is 10.
+    assert seconds(90_000) < 5 * min(seconds(9_000) for _ in range(3))
+
+
 @pytest.mark.parametrize(
     ("heading", "unit"),
     [("Time [s]", 1.0), ("t (ms)", 1e-3), ("Zeit [min]", 60.0), ("Temps/s", 1.0), ("Temps", None)],
@@ -525,6 +537,8 @@ def test_separation_is_the_negative_of_the_depth(tmp_path: Path, heading: str) -
         "ZSnsr (nm);Force (pN)",
         "Piezo (nm);Load (pN)",
         "Z Scan (nm);Force (pN)",
+        "Position [nm];Deflection [pN]",
+        "Z Position;Deflection [pN]",
     ],
 )
 def test_position_of_a_cantilever_is_no_depth_unless_it_is_chosen(heading: str) -> None:
