@@ -66,3 +66,24 @@ def test_cycles_within_rounding_errors_have_no_stiffness() -> None:
         found = given(**{f"tangential_{control}": 1e-6})
         assert found.error_estimate < 0.1
         assert found.secant_stiffness == pytest.approx(2.0, rel=found.error_estimate, abs=0)
+
+
+@pytest.mark.parametrize("shift", (1e-12 * np.arange(1, 20)).tolist())
+def test_error_estimate_of_a_force_before_full_slip_at_a_small_depth(shift: float) -> None:
+    """The largest force belongs to the smallest shift. A cone: F_x = 2 U (1 - U/2) F_N(1)."""
+    path = {"indentation_depth": [1, 1, 1e-5, 1e-5]}
+    found = solve(Cone(1.0), 1, 1, 1, **path, tangential_displacement=[0, shift, shift, 1e-5])
+    expected = 2 * shift * (1 - shift / 2) * found.normal_force[1]
+    room = found.error_estimate * found.tangential_force.max()
+    assert found.tangential_force[1] == pytest.approx(expected, rel=0, abs=room)
+    assert room < 1e-3 * expected
+
+
+@pytest.mark.parametrize("shift", (1e-9 * np.arange(1, 20)).tolist())
+def test_error_estimate_of_the_work_of_a_small_shift_as_the_load_is_removed(shift: float) -> None:
+    """Each spring slips back: work U^2 (1 - w)^2/2, 2 dx = 4 dw/pi. Later the contact sticks."""
+    path = {"indentation_depth": [1, -1, 1], "tangential_displacement": [shift, shift, 0.5]}
+    found = solve(Cone(1.0), 1, 1, 1, **path)
+    expected = shift**2 * 2 / (3 * np.pi)
+    assert found.error_estimate < 1e-5
+    assert found.dissipated_energy[-1] == pytest.approx(expected, rel=found.error_estimate, abs=0)

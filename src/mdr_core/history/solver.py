@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from mdr_core import conditioning, normal, validity
 from mdr_core.doubles import EPS, ROUNDING
-from mdr_core.elementwise import in_blocks
+from mdr_core.elementwise import in_blocks, quotient
 from mdr_core.errors import InputError
 from mdr_core.history import load_path, slip_memory
 from mdr_core.history.contact_state import ContactState, unloaded
@@ -220,22 +220,31 @@ class LoadHistory(validity.ResultsOverLoads):
     def rounding(self) -> float:
         """Relative rounding error of steps of the tangential load and of the slip front [1].
 
-        Both have the rounding error of the larger coordinate. The error of the front passes to the
-        energy that the path dissipates.
+        Both have the rounding error of the larger coordinate. It passes with the slope 2a or 1/(2a)
+        to the other tangential load, thence to the stored energy, and with the way of the springs
+        to the dissipated energy.
         """
-        normal, tangential = np.maximum(self.path.coordinates[0], 0.0), self.path.coordinates[1]
-        least, most = sorted([float(normal.max()), float(np.abs(tangential).max())])
-        deeper, further = np.diff(normal), np.abs(np.diff(tangential))
-        slid = np.where(deeper > 0, further - deeper, np.abs(further + deeper))
-        travel = float(np.max(np.where(normal[1:] > 0, slid, 0.0)))
-        total, error = float(self.dissipated_energy[-1]), 0.0
-        if least > 0:
-            error = most / least
+        path, start, radius = self.path, self.path.start, 2 * self.contact_radius
+        normal, size = np.maximum(path.coordinates[0], 0.0), np.abs(path.coordinates[1])
+        deeper, further = np.diff(normal), np.abs(np.diff(path.coordinates[1]))
+        most, held = np.maximum(normal, size), np.minimum(normal, size)[1:]
+        found = self.tangential_force / (start.friction_coefficient * start.e_star)
+        moved = most[1:] * radius
+        if path.over_forces:
+            found = self.tangential_displacement / start.displacement_ratio
+            moved = quotient(most[1:], radius)
+        energy = self.tangential_energy / start.energy_unit
+        error = quotient(moved.max(), np.abs(found).max(), quotient(most.max(), held.max()))
+        error += quotient((moved * held).max(), energy.max())
+        # Springs that the normal load releases slip back by no more than they were displaced.
+        way = np.where(deeper > 0, further - deeper, np.abs(further + deeper))
+        way = np.minimum(way, np.maximum.accumulate(size)[1:])
+        most = np.maximum(most[1:], most[:-1])
         # If the loads grow in the ratio of friction, only rounding errors move the front.
-        if travel > ROUNDING * most and total > 0:
-            error += most / travel * (1 - self.path.begin.dissipated_energy / total)
+        lost = self.dissipation * quotient(most, np.where(way > ROUNDING * most, way, 0.0))
+        error += quotient(lost.sum(), self.dissipated_energy[-1])
         # The conversion of the normal coordinate adds the rounding error of an inverse.
-        return error * (ROUNDING if self.path.mixed else 2 * EPS)
+        return float(error * (ROUNDING if path.mixed else 2 * EPS))
 
     @cached_property
     def _condition_number(self) -> float:
