@@ -510,3 +510,48 @@ def test_error_estimate_where_loads_fall_nearly_in_the_ratio_of_friction(less: f
     expected, room = one.dissipated_energy, one.error_estimate + other.error_estimate
     room *= float(expected.max())
     assert other.dissipated_energy / 1e-3 == near(expected, rel=0, absolute=room)
+
+
+@pytest.mark.parametrize(
+    ("profile", "force", "mu", "rest"),
+    [
+        (Power(1.0, 0.1), 0.777, 0.46, 1e-2),
+        (Power(1.0, 0.1), 0.478, 0.5, 1e-3),
+        (Cone(0.1), 0.33, 0.78, 1e-2),
+        (Cone(0.1), 0.113, 0.73, 1e-4),
+        (Paraboloid(1.0), 0.218, 0.11, 1e-2),
+    ],
+)
+def test_work_up_to_the_friction_limit_after_loading_almost_in_its_ratio(
+    profile: Profile, force: float, mu: float, rest: float
+) -> None:
+    """Springs loaded to 1 - e of the limit slip by the share e of the way of unloaded ones."""
+
+    def work(*shares: float) -> float:
+        path = {"normal_force": force, "tangential_force": mu * force * np.array(shares)}
+        return float(history.solve(profile, 1.0, 1.0, mu, **path).dissipated_energy[-1])
+
+    # The force returns from 0 to the first load point by Masing's rule.
+    expected = 2 * work(1 - rest, 0) + rest * work(0, 1)
+    assert work(1 - rest, 0, 1) == near(expected)
+
+
+@pytest.mark.parametrize("samples", [2, 3, 6])
+def test_steps_on_which_the_front_stops_near_the_axis_add_up(samples: int) -> None:
+    """The displacement equals the limit by chance: all springs slip, and none twice."""
+    depth, shift = [0.0446, 0.0446, 0.811], [0.0, -0.0892, 0.811]
+    path = {"indentation_depth": depth, "tangential_displacement": shift}
+    one, other = (
+        history.solve(Paraboloid(1.0), 1.0, 1.0, 1.0, **path, samples_per_step=count)
+        for count in (1, samples)
+    )
+    assert other.dissipated_energy[-1] == near(one.dissipated_energy[-1])
+
+
+@pytest.mark.parametrize("profile", [FlatPunch(1.0), RoundedPunch(0.5, 1.0)])
+def test_flats_have_no_contact_radius_without_contact(profile: Profile) -> None:
+    """Depth 0 separates the bodies, as its regime and state say."""
+    path = {"indentation_depth": [0.1, 0.0], "tangential_displacement": 0.0}
+    found = history.solve(profile, 1.0, 1.0, 1.0, **path)
+    assert found.regime[-1] == "no_contact"
+    assert found.contact_radius[-1] == found.state.contact_radius == 0

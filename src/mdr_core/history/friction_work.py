@@ -16,7 +16,7 @@ place of the depth and the measure |d(1/2x)| in place of 2 dx. Source: notes, §
 
 import numpy as np
 
-from mdr_core.doubles import ROUNDING
+from mdr_core.doubles import EPS
 from mdr_core.elementwise import in_blocks
 from mdr_core.history import slip_kernel as kernel
 from mdr_core.history.slip_memory import VertexTree
@@ -34,10 +34,12 @@ def dissipation(moments: IntervalMoments, tree: VertexTree) -> Array:
     """
     pieces = swept(tree)
     step, work = pieces[0].astype(np.intp), np.empty(pieces.shape[1])
-    # In full slip only rounding errors keep the front from the axis.
-    (normal, tangential), low = tree.path[:, step], pieces[1]
-    rest = np.where((np.abs(tangential) == normal) & (low < ROUNDING * normal), low, 0.0)
-    pieces[1:3] += -rest, rest
+    if moments.over_forces:
+        # In full slip the front reaches the axis, or a vertex; rounding may keep it from the axis.
+        (normal, tangential), low = tree.path[:, step], pieces[1]
+        near = np.flatnonzero((np.abs(tangential) == normal) & (low < np.sqrt(EPS) * normal))
+        near = near[~np.isin(low[near], tree.normal)]
+        pieces[1:3, near] += -low[near], low[near]
     for block in in_blocks(work.size):
         work[block] = _work(moments.part(step[block]), pieces[1:, block])
     return np.asarray(np.bincount(step, work, tree.top.size), dtype=float)

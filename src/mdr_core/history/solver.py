@@ -93,7 +93,7 @@ class LoadHistory(validity.ResultsOverLoads):
     @cached_property
     def contact_radius(self) -> Array:
         """a [length]; zero in separation."""
-        return np.where(self._load < 0, 0.0, self.normal.contact_radius)
+        return np.where(self._load <= 0, 0.0, self.normal.contact_radius)
 
     @property
     def elastic_energy(self) -> Array:
