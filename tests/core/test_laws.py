@@ -14,6 +14,7 @@ from numpy.polynomial.legendre import leggauss
 
 from mdr_core import fields
 from mdr_core.normal import NormalContact, solve
+from mdr_core.profiles import TruncatedParaboloid
 from tests.core.comparison import profile_from
 
 if TYPE_CHECKING:
@@ -191,3 +192,14 @@ def test_results_scale_with_units(
     assert float(new.indentation_depth) == pytest.approx(depth, rel=1e-12, abs=0)
     energy = float(old.elastic_energy) * unit**3 * modulus
     assert float(new.elastic_energy) == pytest.approx(energy, rel=1e-11, abs=0)
+
+
+@pytest.mark.parametrize("unit", [1e-50, 1e-45, 1e45, 1e50])
+def test_energy_of_a_truncated_paraboloid_in_any_unit_of_length(unit: float) -> None:
+    """The powers of lengths do not leave the range of doubles."""
+    old, new = (
+        solve(TruncatedParaboloid(0.5 * size, size), E_STAR, indentation_depth=0.3 * size)
+        for size in (1.0, unit)
+    )
+    expected = float(old.elastic_energy)
+    assert float(new.elastic_energy) / unit**3 == pytest.approx(expected, rel=1e-13, abs=0)

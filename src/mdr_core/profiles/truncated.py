@@ -236,10 +236,10 @@ class TruncatedParaboloid(Truncated):
     def reduced_energy(self, coordinate: Array) -> Array:
         """(1/R^2) [a s^2 (b^2 + s^2/3) + s^4 (3a^3 + 6a^2 b + 4a b^2 + 2b^3)/(15 (a + b)^2)]."""
         b, (a, s) = self.flat_radius, self.flank(coordinate)
-        s2 = s * s
+        s2, height = s * s, s * (s / self.radius)
         cubic = ((3 * a + 6 * b) * a + 4 * (b * b)) * a + 2 * (b * b * b)
-        outer = s2 * s2 * cubic / (15 * np.square(a + b))
-        return (a * s2 * (b * b + s2 / 3) + outer) / np.square(self.radius)
+        inner = a * ((b * b + s2 / 3) / self.radius)
+        return height * (inner + height * (cubic / (15 * np.square(a + b))))
 
     def weight(self, x: Array, s: Array) -> Array:
         """(x^2 + s^2)/(x R)."""
