@@ -290,3 +290,21 @@ def test_step_from_a_nearly_flat_part_stays_in_the_table() -> None:
     table, depth = Tabulated(r, f, uncertainty=4.8372163167661616e-08), 2.1738860903574165e-08
     contact = solve(table, 1.0, indentation_depth=depth)
     assert table.g(contact.contact_radius) == pytest.approx(depth, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize("unit", [1e-45, 1e-30, 1e30, 1e45])
+def test_table_in_any_unit_has_the_same_contact(unit: float) -> None:
+    r = np.linspace(0.0, 1.0, 40)
+    f = r * r / 2 + r**4 / 10
+
+    def loads(unit: float) -> list[float]:
+        profile = Tabulated(unit * r, unit * f)
+        contact = solve(profile, 1.0, contact_radius=0.7 * unit)
+        scaled = (
+            (contact.indentation_depth, 1),
+            (contact.normal_force, 2),
+            (contact.elastic_energy, 3),
+        )
+        return [float(value / unit**power) for value, power in scaled]
+
+    assert loads(unit) == pytest.approx(loads(1.0), rel=1e-13, abs=0)

@@ -145,21 +145,31 @@ class SlopePieces:
         """g(x) = int_0^x g' [length]."""
         return self.slope.antiderivative()
 
-    @cached_property
-    def half_force(self) -> PPoly:
+    def half_force(self, x: Array) -> Array:
         """int_0^x t g'(t) dt [length^2]."""
-        moment = np.pad(self.edges[:-1] * self.rows, ((0, 1), (0, 0)))
-        moment[1:] += self.rows
-        return PPoly(moment[::-1], self.edges).antiderivative()
+        return self._unit**2 * self._integrals[0](x / self._unit)
+
+    def energy(self, x: Array) -> Array:
+        """int_0^x (g(x) - g)^2 dt = 2 int (half force) g' dt [length^3]."""
+        return self._unit**3 * self._integrals[1](x / self._unit)
+
+    @property
+    def _unit(self) -> float:
+        """Unit of length of the integrals, whose powers leave the range of doubles otherwise."""
+        return float(self.edges[-1])
 
     @cached_property
-    def energy(self) -> PPoly:
-        """int_0^x (g(x) - g)^2 dt = 2 int (half force) g' dt [length^3]."""
-        half_force = self.half_force.c[::-1]
-        product = np.zeros((len(self.rows) + len(half_force) - 1, self.edges.size - 1))
-        for power, row in enumerate(self.rows):
-            product[power : power + len(half_force)] += 2 * row * half_force
-        return PPoly(product[::-1], self.edges).antiderivative()
+    def _integrals(self) -> tuple[PPoly, PPoly]:
+        edges = self.edges / self._unit
+        rows = self.rows * self._unit ** np.arange(len(self.rows))[:, None]
+        moment = np.pad(edges[:-1] * rows, ((0, 1), (0, 0)))
+        moment[1:] += rows
+        half_force = PPoly(moment[::-1], edges).antiderivative()
+        integral = half_force.c[::-1]
+        product = np.zeros((len(rows) + len(integral) - 1, edges.size - 1))
+        for power, row in enumerate(rows):
+            product[power : power + len(integral)] += 2 * row * integral
+        return half_force, PPoly(product[::-1], edges).antiderivative()
 
     def stress(self, low: float, high: float, width: float, r: Array) -> Array:
         """Return int_max(r,low)^high g'(x)/sqrt(x^2 - r^2) dx at radii r < high.
