@@ -9,7 +9,7 @@ import numpy as np
 from mdr_core.doubles import EPS, LARGEST, ROUNDING, TINY
 from mdr_core.elementwise import every, some, where
 from mdr_core.errors import DefectError
-from mdr_core.typing import Array
+from mdr_core.typing import Array, Flags
 
 Function = Callable[[Array], Array]
 # A function and its logarithmic slope d log(function)/d log(argument).
@@ -77,10 +77,9 @@ def invert(function: Sloped, target: Array, start: Array, low: Array, high: Arra
                 break
             low = where(value < goal, s, low)
             high = where(value > goal, s, high)
-            last = short | ~((s > 1 / LARGEST) & (s < LARGEST))
+            last = short | ~_in_range(s)
             # Where the function hardly rises, a step leaves the range of doubles.
-            inside = (proposed > low) & (proposed < high)
-            inside &= (proposed > 1 / LARGEST) & (proposed < LARGEST)
+            inside = (proposed > low) & (proposed < high) & _in_range(proposed)
             usable = (inside & (count < _ALONE or count % 2 == 1)) | last
             moved = proposed if every(usable) else where(usable, proposed, _middle(low, high))
             moved = where(moved < LARGEST, where(moved > 1 / LARGEST, moved, 0.0), inf)
@@ -100,6 +99,11 @@ def invert(function: Sloped, target: Array, start: Array, low: Array, high: Arra
         raise DefectError("the inverse of a function did not converge")
     root = where(positive, np.maximum(s, root_at_zero), root_at_zero)
     return where(done, root, np.nan)
+
+
+def _in_range(s: Array) -> Flags:
+    """Return True where an argument lies between 1/`LARGEST` and `LARGEST`."""
+    return (s > 1 / LARGEST) & (s < LARGEST)
 
 
 def _middle(low: Array, high: Array) -> Array:

@@ -219,18 +219,12 @@ def places_of(
         return [[i] for i in numeric]
     names = {i + 1: titles[i].name for i in numeric}
     places = [best_of(titles, numeric, quantity) for quantity in kind]
-    # Beside a deflection a position is the cantilever's.
-    deflects = kind == CURVE and any(titles[i].has(_DEFLECTED) for i in places[1])
-    for i in numeric:
-        taken = deflects and [i] == places[0] and not titles[i].falls
-        moves = taken and "position" in titles[i].words
-        lacks = kind == CURVE and not places[0] and [i] not in places
-        if moves or (lacks and titles[i].has(_DEFLECTED)):
-            detail = (
-                f"column {i + 1} is a position or a deflection of a cantilever, no depth: take "
-                "the tip-sample separation, or name the column of depths d"
-            )
-            raise ColumnsError(line, detail, names)
+    if kind == CURVE and (wrong := _of_cantilever(titles, numeric, *places)):
+        detail = (
+            f"column {wrong[0] + 1} is a position or a deflection of a cantilever, no depth: take "
+            "the tip-sample separation, or name the column of depths d"
+        )
+        raise ColumnsError(line, detail, names)
     if kind == CURVE and all(_are_branches([titles[i] for i in best]) for best in places):
         return [sorted(best, key=lambda i: str(segment_of(titles[i].name))) for best in places]
     for quantity, best in zip(kind, places, strict=True):
@@ -248,6 +242,18 @@ def places_of(
         detail = f"{len(titles)} columns; name {asked} in a line above, as {form}"
         raise ColumnsError(line, detail, names)
     return places
+
+
+def _of_cantilever(
+    titles: Sequence[Title], numeric: Sequence[int], depths: list[int], forces: list[int]
+) -> list[int]:
+    """Return the columns of a curve without a depth that include the deflection of a cantilever."""
+    if not depths:
+        return [i for i in numeric if [i] != forces and titles[i].has(_DEFLECTED)]
+    # Beside a deflection a position is the cantilever's.
+    if not any(titles[i].has(_DEFLECTED) for i in forces):
+        return []
+    return [i for i in depths if "position" in titles[i].words and not titles[i].falls]
 
 
 def best_of(titles: Sequence[Title], numeric: Sequence[int], quantity: str) -> list[int]:

@@ -160,6 +160,7 @@ class SlopePieces:
 
     @cached_property
     def _integrals(self) -> tuple[PPoly, PPoly]:
+        """Half force and energy, with lengths over `_unit`."""
         edges = self.edges / self._unit
         rows = self.rows * self._unit ** np.arange(len(self.rows))[:, None]
         moment = np.pad(edges[:-1] * rows, ((0, 1), (0, 0)))

@@ -39,7 +39,8 @@ def dissipation(moments: IntervalMoments, tree: VertexTree) -> Array:
         (normal, tangential), low = tree.path[:, step], pieces[1]
         near = np.flatnonzero((np.abs(tangential) == normal) & (low < np.sqrt(EPS) * normal))
         near = near[~np.isin(low[near], tree.normal)]
-        pieces[1:3, near] += -low[near], low[near]
+        pieces[2, near] += low[near]
+        pieces[1, near] = 0.0
     for block in in_blocks(work.size):
         work[block] = _work(moments.part(step[block]), pieces[1:, block])
     return np.asarray(np.bincount(step, work, tree.top.size), dtype=float)
